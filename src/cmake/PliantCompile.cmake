@@ -1,5 +1,5 @@
-# How pliant is compiled. pliant_options travels with the targets (layout and rounding must be the same in the library
-# and in its clients); pliant_warnings is for our own sources only.
+# How pliant is compiled. pliant_options is exported with the libraries, because memory layout and rounding must be the
+# same in the library and in its clients. pliant_warnings is for pliant's own sources only.
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
@@ -18,26 +18,26 @@ if(PLIANT_WERROR)
   target_compile_options(pliant_warnings INTERFACE -Werror)
 endif()
 if(PLIANT_NATIVE)
-  # With the targets too: how vectors are passed depends on it, and a client that differed would not link.
+  # Exported too: the calling convention of vectors depends on this option, and a client without it would not link.
   target_compile_options(pliant_options INTERFACE -march=native)
-  # GCC 12 takes its own AVX-512 intrinsics for uninitialised reads, and sees them read small matrices, which they do
-  # not reach at run time.
+  # GCC 12 reports uninitialised reads in its own AVX-512 intrinsics, and reads outside small matrices that do not
+  # happen at run time.
   target_compile_options(pliant_warnings INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()
 if(PLIANT_SANITIZE)
-  # A null pointer faults by itself, and so does a misaligned packet; the checks of both, one for each access, would
-  # double the time to compile and to run.
+  # Null pointers and misaligned packets crash even without checks. Checks of each access would double the time to compile
+  # and to run.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
                       -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
-  add_compile_definitions(PLIANT_SANITIZED)  # tests that sanitizers slow down, or that count allocations, ask
+  add_compile_definitions(PLIANT_SANITIZED)  # for tests that sanitizers slow down, and tests that count allocations
 endif()
 
-# A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core, and
-# the component core of the installed package. A header-only private library goes in as $<BUILD_INTERFACE:...>: then
-# clients need not have it.
+# Adds a library: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core, pliant::core and the
+# component core of the installed package. Write a header-only private library as $<BUILD_INTERFACE:...>, so that
+# clients do not need it.
 function(pliant_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(pliant_${name} ${arg_SOURCES})
@@ -49,7 +49,7 @@ function(pliant_library name)
   target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
-  if(PLIANT_UNITY)  # a source is then not the main file, whose unnamed namespace may be in its types
+  if(PLIANT_UNITY)  # GCC warns of types with members of unnamed namespaces in included sources
     target_compile_options(pliant_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   pliant_install_library(${name} ${arg_PUBLIC} ${arg_PRIVATE})

@@ -1,4 +1,5 @@
-# The target docs: pages of the engine by Doxygen, where it is installed (Debian package doxygen). Warnings are errors.
+# The target docs makes pages of the headers with Doxygen (Debian package doxygen). The target exists only if Doxygen is
+# installed. Warnings are errors.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
   return()

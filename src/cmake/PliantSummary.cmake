@@ -1,7 +1,7 @@
-# What was found and what is off: the table at the end of configuring.
+# The table at the end of configuring: packages that were found, and options that are off.
 
-# The packages that the targets of a directory, or of those below it, link: sets PLIANT_USERS_<package> in the caller's
-# scope to the names shown for them. `shown` names all targets alike; empty: each by its own name.
+# Finds the packages that the targets of a directory and of its subdirectories link. Adds the names of these targets to
+# PLIANT_USERS_<package> in the caller's scope. shown: one name for all targets; if empty, each target has its own name.
 function(_pliant_collect_users directory shown)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
@@ -40,7 +40,7 @@ function(_pliant_pad text width result)
   set(${result} "${text}${spaces}" PARENT_SCOPE)
 endfunction()
 
-# A line about an option that is off: what is missing because of it.
+# If an option is off, prints a line with what is not built because of it.
 function(_pliant_off_line option what)
   if(NOT ${option})
     _pliant_pad("${option}" 18 option)

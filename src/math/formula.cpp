@@ -32,8 +32,8 @@ constexpr Entry kFunctions[] = {
     {"log", Code::kLog, "natural logarithm"},
     {"sqrt", Code::kSqrt, "square root"},
     {"abs", Code::kAbs, "absolute value"},
-    {"min", Code::kMin, "the smaller of two"},
-    {"max", Code::kMax, "the larger of two"},
+    {"min", Code::kMin, "the smaller of two arguments"},
+    {"max", Code::kMax, "the larger of two arguments"},
     {"step", Code::kStep, "step(x): 0 for x < 0, else 1"},
     {"smoothstep", Code::kSmoothstep,
      "smoothstep(a, b, x): 0 up to a, 1 from b on, and between them a quintic with continuous second "

@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of nearest_name.h once for the library.
 #include <pliant/math/nearest_name-inl.h>

@@ -47,8 +47,8 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
 
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, double tolerance) {
   const Eigen::Index n = F.rows();
-  // Scale each column by its absolute sum, and each row by the square root d_i of its norm. The unknown x = d
-  // c then behaves like the square root of a weight.
+  // Scale each column by its absolute sum, and each row by the square root d_i of its norm. The unknowns x_i
+  // = d_i c_i then behave like square roots of weights.
   Eigen::MatrixXd A = F;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
     const double sum = A.col(k).cwiseAbs().sum();

@@ -23,7 +23,8 @@ struct ThreadPool::Impl {
   std::condition_variable wake, done;
   const std::function<void(int)>* task = nullptr;
   int n = 0;
-  bool flush = false;  ///< flush mode of the calling thread; all threads use it, so that results are equal
+  /// Whether the caller flushes subnormal numbers. All threads then do, so that results are equal.
+  bool flush = false;
   std::atomic<int> next{0};
   int busy = 0;
   long round = 0;

@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of time_function.h once for the library.
 #include <pliant/math/time_function-inl.h>

@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of block_pattern.h once for the library.
 #include <pliant/solve/block_pattern-inl.h>

@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of coulomb_cluster.h once for the library.
 #include <pliant/solve/coulomb_cluster-inl.h>

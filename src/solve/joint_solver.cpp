@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of joint_solver.h once for the library.
 #include <pliant/solve/joint_solver-inl.h>

@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// Compiles the functions of mover_system.h once for the library.
 #include <pliant/solve/mover_system-inl.h>

@@ -88,7 +88,7 @@ TEST_CASE("bending: rigid motion causes no strain, own coordinates carry no mome
         Approx(folding.energy(with_own_coordinates(rest(mesh), phi))).epsilon(1e-12));
   CHECK(linear.energy(with_own_coordinates(small, phi)) ==
         Approx(linear.energy(with_own_coordinates(none, phi))).epsilon(1e-12));
-  // The nodal forces of phi have no resultant.
+  // The nodal forces due to phi have no resultant force and no resultant torque.
   const auto at = nodes(push, mesh.n_nodes());
   Vec3<double> torque = Vec3<double>::Zero();
   for (Eigen::Index i = 0; i < mesh.n_nodes(); ++i)
@@ -111,11 +111,12 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Sheet sheet{7e4, nu, 0.02};
     const LinearBending bending(mesh, sheet, kMass);
     const std::vector<ShellEdge> edges = shell_edges(mesh);
-    // The slope of w outwards across an edge at its middle, minus the slope of a triangle.
+    // phi: the mean slope of the triangles at an edge, across this edge, minus the slope of w at the middle
+    // of the edge.
     VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const Vec3<double> p = mesh.X().row(edges[e].a), q = mesh.X().row(edges[e].b), middle = 0.5 * (p + q);
-      // away from the left triangle
+      // unit vector across the edge, away from the left triangle
       const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));
       const Vec3<double> slope(xx * middle[0] + xy * middle[1], yy * middle[1] + xy * middle[0], 0);
       const auto normal_angle =
@@ -197,7 +198,7 @@ TEST_CASE("bending: an irregular sheet rolled to half a cylinder has the energy 
 }
 
 TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sanders", "[local]") {
-  // Displacements w Y along the normal and u grad Y along the sphere rotate normals by grad (u - w) Y: E =
+  // Displacements w Y along the normal and u grad Y along the sphere rotate normals by (u - w) grad Y: E =
   // D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
   const int n = 2;
   const double b = n * (n + 1), nu = 0.3;
@@ -223,7 +224,8 @@ TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sande
 
 namespace {
 
-/// Deflection of a square plate of side 1 under q = 1 with D = 1: in the middle, and its integral.
+/// Deflection of a square plate with side 1 and D = 1 under a load of 1 for each unit of area: in the middle,
+/// and the integral over the plate.
 struct Deflection {
   double middle, integral;
 };
@@ -239,7 +241,8 @@ Deflection plate(int n, bool clamped, std::uint64_t seed) {
   const std::vector<ShellEdge> edges = shell_edges(mesh);
   const Eigen::Index nodes = mesh.n_nodes(), own = static_cast<Eigen::Index>(edges.size());
   const auto on_boundary = [&](Eigen::Index i) { return X.row(i).cwiseAbs().maxCoeff() > 0.4999; };
-  // Free coordinates: z of inner nodes, and phi; a clamped edge has phi = -z/height of the opposite corner.
+  // Free coordinates: z of inner nodes, and phi; a clamped edge has phi = -z/height, where z and height are
+  // those of the opposite corner.
   std::vector<Eigen::Index> column(static_cast<std::size_t>(nodes), -1);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index n_free = 0;

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kRadius = 2.5, kE = 2e11, kDensity = 7800, kThickness = 0.1;
 
-/// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of the lower branch; n = 0: breathing.
+/// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of degree n, lower branch; n = 0: breathing (uniform radial
+/// motion).
 double membrane_value(int n, double nu) {
   if (n == 0) return 2 * (1 + nu);
   const double b = n * n + n + 1 + 3 * nu;
@@ -64,7 +65,7 @@ MatX<double> neighbours(const ShellMesh& mesh, int n) {
   return both;
 }
 
-/// Returns the relative error of Omega of degree n: square root of the mean of 2n + 1 modes of the mesh.
+/// Returns the relative error of Omega of degree n, from the mean omega^2 of 2n + 1 modes of the mesh.
 double mode_error(const Shell& shell, int n, double nu) {
   const double exact = membrane_value(n, nu) * unit(nu);
   return std::sqrt(mean_of_modes(membrane_stiffness(shell, nu), shell.M, exact,
@@ -75,7 +76,7 @@ double mode_error(const Shell& shell, int n, double nu) {
 
 constexpr std::array<int, 6> kDegrees{0, 2, 3, 4, 5, 6};
 using Errors = std::array<double, kDegrees.size()>;
-/// Returns these errors for the exact fields of all degrees, smoothed on the mesh.
+/// Returns the relative errors of Omega of all degrees, from the exact fields, smoothed on the mesh.
 Errors field_errors(const Shell& shell, double nu) {
   const Sparse K = membrane_stiffness(shell, nu), M(shell.M.asDiagonal());
   Errors errors;
@@ -88,11 +89,12 @@ Errors field_errors(const Shell& shell, double nu) {
   return errors;
 }
 
-/// Frequencies of the shell with bending, Hz (code_aster SDLS07).
+/// Frequencies of the shell with bending, Hz (code_aster SDLS07). Index: degree n; 0 and 1 are not used.
 constexpr std::array<double, 11> kBending{0,      0,      237.25, 282.85, 305.24, 324.17,
                                           346.76, 376.68, 416,    465.75, 526.20};
 
-/// Returns relative errors of the frequencies of n = 2 .. 10, square roots of means of 2n + 1 modes.
+/// Returns relative errors of the frequencies of degrees n = 2 .. 10. A frequency is the square root of the
+/// mean omega^2 of 2n + 1 modes.
 std::array<double, 11> bending_errors(int levels) {
   const Shell shell = icosphere_shell(levels);
   const Sheet sheet{kE, 0.3, kThickness};
@@ -122,8 +124,8 @@ double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// Returns whether modes of the mesh belong to one degree. From n = 4 on there are modes of short waves
-/// between them; for nu = 0 torsion of n = 2 has the frequency of breathing.
+/// Returns whether the modes of the mesh near a frequency belong to one degree. From n = 4 on, modes of short
+/// waves are between them. For nu = 0, torsion of degree 2 has the frequency of breathing.
 bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }

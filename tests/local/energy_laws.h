@@ -1,6 +1,6 @@
-// Laws of every energy of local deformation at a point x: the force is minus its gradient, the derivative is
-// that of the force, the matrix that of the derivative. Bits do not depend on threads; the frequency bound is
-// valid.
+// Checks of every energy of local deformation at coordinates x: the force is minus the gradient of the
+// energy, add_derivative() adds the derivative of the force, and add_stiffness() agrees with it. Results have
+// the same bits for any number of threads. The frequency bound is valid.
 #pragma once
 
 #include <vector>
@@ -68,7 +68,7 @@ inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   CHECK((K - Eigen::SparseMatrix<double>(K.transpose())).norm() <= 1e-13 * K.norm());
 }
 
-/// Needs a mesh with more elements than a range has (element_batches.h).
+/// Checks that threads do not change a bit. The mesh needs more elements than a range (element_batches.h).
 inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   Draws draws(9);
   const VecX<double> dx = random_vector(draws, x.size());
@@ -81,8 +81,8 @@ inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   }
 }
 
-/// Checks that the bound is above the largest frequency and at most `times` as large. The matrix is dense:
-/// for small meshes.
+/// Checks that the bound is at least the largest omega^2 and at most `times` as large. The matrix is dense,
+/// so that the mesh must be small.
 inline void check_bound(const NodalEnergy& energy, const VecX<double>& x, const VecX<double>& M,
                         double times) {
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();

@@ -46,7 +46,8 @@ ParameterMesh parameter_grid(int rows, int columns) {
   return mesh;
 }
 
-/// Returns nodal masses mu du dv; each node receives a third of its triangles.
+/// Returns nodal masses for the density mu in (u, v); each node receives a third of the mass of its
+/// triangles.
 VecX<double> parameter_masses(const ParameterMesh& mesh, double mu) {
   VecX<double> M = VecX<double>::Zero(mesh.n_nodes);
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -85,8 +86,8 @@ VecX<double> part_spectrum(const char* shape, int resolution, double w0, double 
 }  // namespace
 
 TEST_CASE("loaded membrane: the spectrum of the parameter rectangle with poles", "[local]") {
-  // omega^2 = (w0 + w1 (m^2 + n^2))/mu. m = 0: n = 0, 1, ...; m >= 1, twice: n = 1, 2, ..., zero at the
-  // poles.
+  // omega^2 = (w0 + w1 (m^2 + n^2))/mu, with wave numbers m along v and n along u. For m = 0, n is 0, 1, ...
+  // For each m >= 1, n is 1, 2, ..., with two modes each, which are zero at the poles.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 10> exact{0, 1, 2, 2, 4, 5, 5, 5, 5, 8};
   VecX<double> error[2];
@@ -125,11 +126,11 @@ TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh 
 }
 
 TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh of a ball", "[local][long]") {
-  // The spectrum with poles. Rings around a pole have 8, 16, ... nodes; on the first ring they are pi/4
-  // apart, however fine the mesh is. A mode with m >= 1 vanishes at the pole in proportion to the distance x.
-  // Its linear interpolation between nodes of ring k, which are pi/(4k) apart, has an error of x/k^2. The
-  // slope across the ring therefore errs by 1/k on a strip one edge wide, which sums to the first power of
-  // the edge length. Modes with m = 0 do not depend on v.
+  // The spectrum is that of the rectangle with poles. Rings around a pole have 8, 16, ... nodes; on the first
+  // ring they are pi/4 apart in v, however fine the mesh is. A mode with m >= 1 is proportional to the
+  // distance x from the pole. Its linear interpolation between nodes of ring k, which are pi/(4k) apart, has
+  // an error of x/k^2. The slope across the ring therefore errs by 1/k on a strip one edge wide, which sums
+  // to the first power of the edge length. Modes with m = 0 do not depend on v.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 12> exact{0, 1, 2, 2, 4, 5, 5, 5, 5, 8, 8, 9};
   const auto along_u = [](int i) { return i == 1 || i == 4 || i == 11; };  // modes with m = 0
@@ -150,7 +151,7 @@ TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh 
 }
 
 TEST_CASE("loaded membrane: the spectrum of the sphere", "[local]") {
-  // omega^2 = (w0 + w1 l (l + 1)/r^2)/sigma, 2 l + 1 times for each of x, y, z.
+  // omega^2 = (w0 + w1 l (l + 1)/r^2)/sigma, with 2 l + 1 modes for each of x, y and z.
   const double w0 = 40, w1 = 5, sigma = 0.6, r = 0.8;
   for (const Load::Size size : {Load::Size::lumped, Load::Size::consistent}) {
     std::array<double, 3> error[2];

@@ -20,7 +20,7 @@ VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
 
-/// Checks derivatives, threads, and the matrix with its rank-one part.
+/// Checks derivatives, threads, and the stiffness matrix with its rank-one term.
 void check_laws(const Pressure& pressure, const Pressure& more, const ShellMesh& small,
                 const ShellMesh& large) {
   Draws draws(1);
@@ -80,7 +80,7 @@ TEST_CASE("pressure: the equilibrium of a rubber balloon agrees with theory", "[
     const VecX<double> x = s * rest(mesh);
     const VecX<double> pull = force(NeoHookeanMembrane(mesh, {E, 0.5, t}), x),
                        push = force(ConstantPressure(mesh, p), x);
-    // The ratio of virtual works on a growing sphere.
+    // The ratio of the virtual works of both forces when the sphere grows; it is -1 in equilibrium.
     return std::abs(pull.dot(x) / push.dot(x) + 1);
   };
   const double coarse = error(2), fine = error(3);

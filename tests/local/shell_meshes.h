@@ -100,14 +100,14 @@ inline VecX<double> node_areas(const ShellMesh& mesh) {
   return area;
 }
 
-/// Repeats one value a node for the local coordinates along x, y and z.
+/// Repeats one value for each node for the local coordinates along x, y and z.
 inline VecX<double> thrice(const VecX<double>& a) {
   VecX<double> all(3 * a.size());
   all << a, a, a;
   return all;
 }
 
-/// Returns local coordinates from one vector a node.
+/// Returns local coordinates with the vector f(X) at each node, X: position of the node.
 template <class F>
 VecX<double> field(const ShellMesh& mesh, F&& f) {
   const Eigen::Index n = mesh.n_nodes();

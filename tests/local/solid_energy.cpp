@@ -1,4 +1,4 @@
-// Laws of the energies of tetrahedra: forces, derivatives, stiffness, patch tests, rigid motion, threads,
+// Checks of the energies of tetrahedra: forces, derivatives, stiffness, patch tests, rigid motion, threads,
 // frequency bounds.
 #include <pliant/local/solid/solid_energy.h>
 
@@ -153,18 +153,18 @@ TEMPLATE_TEST_CASE("a uniform strain gives equal stress in all elements", "[soli
     double volume = 0;
     for (int e = 0; e < energy.n_elements(); ++e) volume += energy.volume(e);
     CHECK(energy.energy(x) == Approx(volume * energy.law().density(A)).epsilon(1e-13));
-    // The virtual work of the boundary: sum of f_a X_a^T = -V P.
+    // Virtual work of the boundary: the sum of f_a X_a^T is -V P, with V the volume.
     const Mat3<double> stress = nodes(f, mesh.n()).transpose() * mesh.rest;
     CHECK((stress + volume * energy.law().stress(A)).norm() <= 1e-13 * stress.norm());
   }
 }
 
-TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding unless the rest shape is deformed",
+TEST_CASE("elements of 15 nodes balance a uniform stress to rounding, unless the rest shape is deformed",
           "[solid]") {
   // The force on a node is an integral of degree 3 over elements with quadratic geometry, for which the rule
   // of degree 5 is exact. A boundary bubble adds nothing, by the symmetry of the rule. In the undeformed
-  // shape Solid places face and middle nodes without bubbles; taper and bend create bubbles, and an integrand
-  // of degree 7.
+  // shape Solid places face and middle nodes without bubbles; taper and bend create bubbles, so that the
+  // integrand has degree 7.
   auto residual = [](const SolidMesh& mesh) {
     using Linear = Kind<EnrichedTetrahedron, LinearLaw>;
     const VecX<double> f = force(Linear::make(mesh), affine(mesh.rest, uniform_strain(), {0, 0, 0}));

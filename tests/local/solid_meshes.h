@@ -37,7 +37,8 @@ inline SolidMesh solid_mesh(const std::string& shape, const Part::Named& values,
           solid.boundary()};
 }
 
-/// A bent and tapered box: 48 elements of all orientations, or 8 x 48 elements of 4 nodes.
+/// Returns a bent and tapered box of 48 elements of all orientations, or of 8 x 48 elements if they have 4
+/// nodes.
 inline SolidMesh crooked_box(int n_nodes) {
   return solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
                     n_nodes == 4 ? 2 : 1, order_of(n_nodes), {"taper", "bend"});
@@ -47,7 +48,7 @@ inline SolidMesh crooked_box(int n_nodes) {
 /// nodes have the geometry of elements of 10.
 inline SolidMesh without_bubbles(SolidMesh mesh) {
   std::array<Vec3<double>, EnrichedTetrahedron::n_nodes> X;
-  std::array<Vec3<double>, 5> size;  // bubbles of the faces and the middle
+  std::array<Vec3<double>, 5> size;  // coefficients of the bubbles of the faces and the middle
   auto measure = [&] {
     for (int r = 0; r < 3; ++r) {
       double face[4], middle;

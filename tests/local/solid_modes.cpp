@@ -45,9 +45,10 @@ VecX<double> field(const SolidMesh& mesh, F&& f) {
   return u;
 }
 
-/// Relative errors of omega r / c_t of the unit sphere with nu_P = 0.3: T2 and S2 (five modes each), S1
-/// (three), and breathing. Modes of S2 (second radial order, 0.2 % away) and S4 (1 % away) mix with
-/// breathing, so that its error is that of the exact field, smoothed on the mesh.
+/// Relative errors of omega r / c_t of the unit sphere with nu_P = 0.3: torsional modes of order 2 (T2, five
+/// modes), spheroidal modes of orders 2 and 1 (S2, five; S1, three), and breathing. Modes of S2 (second
+/// radial order, 0.2 % away) and S4 (1 % away) mix with breathing, so that its error is that of the exact
+/// field, smoothed on the mesh.
 struct LambErrors {
   double T2, S2, S1, breathing;
 };
@@ -164,7 +165,7 @@ struct Bar {
         mesh(test::solid_mesh("cylinder", {{"a3", length / 2}}, resolution, Order::quadratic)),
         whole(matrices<QuadraticTetrahedron>(mesh, Elasticity(1, poisson), Mass::consistent)) {}
 
-  /// sqrt(E I / rho A) / L^2.
+  /// Returns sqrt(E I / rho A) / L^2, the unit of the bending frequencies.
   double unit() const { return 0.5 / (L * L); }
   double shear_speed() const { return std::sqrt(1 / (2 * (1 + nu))); }
   bool at_end(int node, double z) const { return std::abs(mesh.rest(node, 2) - z) < 1e-9; }
@@ -222,19 +223,20 @@ double mode_frequency(const Modes& modes, const test::Sparse& M, const MatX<doub
     best = fraction;
     omega = std::sqrt(modes.values[i]);
   }
-  CHECK(best > 0.75);  // the rest is mainly rotation of the sections
+  CHECK(best > 0.75);  // the remaining modal mass is mainly rotation of the sections
   return omega;
 }
 
 constexpr std::array<double, 3> kFreeRoots{4.730041, 7.853205, 10.995608},
     kClampedRoots{1.875104, 4.694091, 7.854757};
 
-/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / rho A) / L^2: Timoshenko's beam
-/// for L / r = 10 and 20, and the solid for L / r = 10 (polynomials of degree 10, tests/part/bases.cpp).
+/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / rho A) / L^2, from Timoshenko's
+/// beam for L / r = 10 and 20, and from the solid for L / r = 10 (polynomials of degree 10,
+/// tests/part/bases.cpp).
 constexpr std::array<double, 3> kBeam10{20.3813, 49.2314, 83.9790}, kBeam20{21.8046, 57.5396, 106.6438},
     kSolid10{20.41175, 49.4462, 84.565};
 
-/// Results for a free bar: bending frequencies in these units, and relative errors of torsion and of
+/// Results for a free bar: bending frequencies in units of Bar::unit(), and relative errors of torsion and of
 /// stretching with lateral inertia (Rayleigh, Love).
 struct FreeBar {
   std::array<double, 3> bending;
@@ -260,9 +262,10 @@ double bending_order(const FreeBar& coarse, const FreeBar& fine, std::size_t k, 
   return order(coarse.bending[k] / kSolid10[k] - 1, fine.bending[k] / kSolid10[k] - 1, ratio);
 }
 
-/// Relative errors of a bar that is clamped at one end: the first two frequencies of torsion and, for nu = 0
-/// (no lateral contraction at the clamp), of stretching, (n - 1/2) pi c / L, which are exact in the solid;
-/// the first three bending frequencies against Timoshenko's beam for nu = 0.3.
+/// Relative errors of a bar that is clamped at one end. Torsion: the first two frequencies against (n - 1/2)
+/// pi c / L, which is exact for the solid. Stretching: the first two frequencies against this formula, which
+/// is exact for nu = 0 (no lateral contraction at the clamp). Bending: the first three frequencies against
+/// Timoshenko's beam with nu = 0.3.
 struct ClampedErrors {
   std::array<double, 2> torsion, stretch;
   std::array<double, 3> bending;
@@ -288,9 +291,9 @@ ClampedErrors clamped_bar(int resolution, double nu) {
   return errors;
 }
 
-/// Relative errors of the statics of a bar with nu = 0, clamped at one end: the deflection under a force F at
-/// the other end, F L^3 / 3 E I plus F L / kappa G A by shear, and the torque T = G J theta / L that rotates
-/// this end.
+/// Relative errors of the statics of a bar with nu = 0 that is clamped at one end. The exact deflection under
+/// a force F at the other end is F L^3 / 3 E I, plus F L / kappa G A by shear. The exact torque that rotates
+/// this end by theta is T = G J theta / L.
 struct StaticErrors {
   double deflection, torque;
 };
@@ -312,7 +315,7 @@ StaticErrors loaded_bar(int resolution) {
     return S * factor.solve(S.transpose() * f);
   };
   const double deflection = F.dot(solve(bar.free_coordinates({-L / 2}), F));
-  VecX<double> u = bar.torsion([](double s) { return s; });  // with the prescribed displacements of the ends
+  VecX<double> u = bar.torsion([](double s) { return s; });  // has the prescribed displacements of the ends
   u -= solve(bar.free_coordinates({-L / 2, L / 2}), K * u);
   return {deflection / (L * L * L / (3 * I) + L / (kappa * G * A)) - 1, u.dot(K * u) / (G * J / L) - 1};
 }

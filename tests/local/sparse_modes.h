@@ -28,7 +28,8 @@ inline Sparse stiffness_at(const NodalEnergy& energy, const VecX<double>& x) {
   energy.add_stiffness(x, entries);
   return sparse(entries, x.size());
 }
-/// Returns the matrix over nodes repeated for each of the three directions.
+/// Returns the matrix over local coordinates that repeats a matrix over nodes for each of the three
+/// directions.
 inline Sparse in_space(const std::vector<Eigen::Triplet<double>>& entries, int n) {
   std::vector<Eigen::Triplet<double>> all;
   for (const auto& entry : entries)
@@ -40,8 +41,8 @@ inline Sparse in_space(const VecX<double>& masses) {
 }
 
 /// Computes omega^2 of given fields on a mesh. One solution of (K + below M) U' = M U smooths the fields on
-/// the mesh. Other modes in U' have frequencies nearby, and each value is a weighted mean of them, also if
-/// close modes of the mesh mix.
+/// the mesh. U' contains other modes of nearby frequencies only. Each value is a weighted mean of their
+/// omega^2, also if close modes of the mesh mix.
 class SmoothedFields {
  public:
   SmoothedFields(Sparse K, Sparse M, double below) : K_(std::move(K)), M_(std::move(M)) {

@@ -68,7 +68,7 @@ TEST_CASE("rigid motion causes no strain, and rotation does not change the strai
 TEST_CASE("the strain is the largest principal strain") {
   const Skin skin = two_triangles();
   const SurfaceStrain strain(skin.X, skin.triangles);
-  // Longer along x, shorter along y: the first is the result.
+  // Longer along x, shorter along y: the strain along x is the result.
   Mat3<double> F = Vec3<double>(1.3, 0.7, 5).asDiagonal();
   CHECK((strain.at(F * skin.X).array() - 0.5 * (1.69 - 1)).abs().maxCoeff() < 1e-14);
   // Shorter along both axes: the smaller contraction is the result.

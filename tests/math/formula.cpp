@@ -91,7 +91,7 @@ std::string fault(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a formula gives its value, rate and second derivative") {
+TEST_CASE("a formula returns its value, rate and second derivative") {
   for (const Case& c : cases()) {
     const Formula formula(c.text);
     CHECK_FALSE(formula.is_constant());
@@ -146,7 +146,7 @@ TEST_CASE("precedence of signs and powers follows mathematics") {
   CHECK(value("t^-3", -2) == -0.125);
 }
 
-TEST_CASE("parts without t are computed once") {
+TEST_CASE("subexpressions without t are evaluated once") {
   CHECK(Formula("2*pi*(1 + sqrt(4))^2").is_constant());
   CHECK(Formula("sin(0)").is_constant());
   const auto y = Formula("sqrt(0)*t + abs(0)").at(2);
@@ -156,7 +156,7 @@ TEST_CASE("parts without t are computed once") {
   CHECK(fault("(-8)^(1/3)") == "at character 5: the value here is not a finite number");
 }
 
-TEST_CASE("at a kink the derivatives are one-sided from later times") {
+TEST_CASE("at a kink the derivatives are one-sided, towards later times") {
   CHECK(Formula("abs(t)").at(0).d == 1);
   CHECK(Formula("abs(-t)").at(0).d == 1);
   CHECK(Formula("abs(t^2)").at(0).dd == 2);
@@ -172,7 +172,7 @@ TEST_CASE("at a kink the derivatives are one-sided from later times") {
   CHECK(Formula("smoothstep(0, 1, t)").at(1e-9).dd == Approx(6e-8).epsilon(1e-6));
 }
 
-TEST_CASE("values that are not finite are never hidden") {
+TEST_CASE("values that are not finite are never replaced by finite ones") {
   CHECK(std::isinf(value("1/t", 0)));
   CHECK(std::isnan(value("log(t)", -1)));
   for (const char* text :

@@ -1,4 +1,4 @@
-// Laws of the scalar types of formulas: Dual, Taylor2, Pack, and signed powers.
+// Checks of the scalar types of formulas: Dual, Taylor2, Pack, and signed powers.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -25,8 +25,8 @@ bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// A random formula of two variables with moderate values and derivatives: a postfix program over a pool of
-/// intermediate results, which runs on any scalar.
+/// A random formula of two variables with moderate values and derivatives, for any scalar. Each step applies
+/// an operation to two earlier results.
 class RandomFormula {
  public:
   RandomFormula(unsigned seed, int length) {

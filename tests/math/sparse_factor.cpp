@@ -34,8 +34,8 @@ std::vector<Backend> backends() {
           {"CHOLMOD supernodal", [] { return pliant::make_cholmod_factor({0}); }}};
 }
 
-/// Returns the stiffness matrix of random springs of random strength between n points, and of a weak spring
-/// from every point to the ground.
+/// Returns the stiffness matrix of springs of random stiffness between random pairs of n nodes, and of a weak
+/// spring from each node to the ground.
 SparseMatrix spring_net(int n, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> point(0, n - 1);

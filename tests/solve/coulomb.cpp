@@ -1,4 +1,4 @@
-// Coulomb's law at one contact: its conditions, for random response matrices, sticking and sliding.
+// Coulomb's law at one contact: its conditions for random matrices W, sticking and sliding.
 #include "catch.h"
 
 #include <cmath>
@@ -47,7 +47,7 @@ TEST_CASE("the impulse of a contact obeys Coulomb's law", "[coulomb]") {
 }
 
 TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and slides above", "[coulomb]") {
-  const Mat3<double> W = Mat3<double>::Identity() / 2;  // of a point of 2 kg
+  const Mat3<double> W = Mat3<double>::Identity() / 2;  // of a point mass of 2 kg
   for (const double along : {0.3, 0.7}) {
     const Vec3<double> p = solve_coulomb(W, {-1, along, 0}, 0.5);
     CHECK(p[0] == Approx(2).epsilon(1e-15));

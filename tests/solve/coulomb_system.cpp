@@ -25,7 +25,8 @@ struct LineOfMasses {
   VecX<double> x;
   double mu;
 
-  /// `size` of each mover: 3 for points, 6 for bodies of unit inertia with contacts away from their centres.
+  /// size: velocities of each mover; 3 for point masses, 6 for bodies of unit inertia with contacts away from
+  /// their centres.
   LineOfMasses(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
     for (int i = 0; i < movers; ++i) {
       system.add_mover(size);
@@ -95,7 +96,7 @@ TEST_CASE("impulses of many contacts obey Coulomb's law at each contact", "[coul
     }
 }
 
-TEST_CASE("impulses on points obey Coulomb's law", "[coulomb]") {
+TEST_CASE("impulses on point masses obey Coulomb's law", "[coulomb]") {
   Draws draws(8);
   for (int trial = 0; trial < 20; ++trial) {
     LineOfMasses line(10, 3, 1, 0.5, draws);
@@ -105,7 +106,7 @@ TEST_CASE("impulses on points obey Coulomb's law", "[coulomb]") {
   }
 }
 
-TEST_CASE("points with more contacts than degrees of freedom are stopped exactly", "[coulomb]") {
+TEST_CASE("point masses with more contacts than degrees of freedom are stopped exactly", "[coulomb]") {
   Draws draws(11);
   for (int trial = 0; trial < 20; ++trial) {
     LineOfMasses line(2 + trial % 9, 3, 5, 0.4, draws);
@@ -115,7 +116,7 @@ TEST_CASE("points with more contacts than degrees of freedom are stopped exactly
   }
 }
 
-TEST_CASE("a side without response to impulses is not part of the system", "[coulomb]") {
+TEST_CASE("a mover that no impulse changes is not part of the linear system", "[coulomb]") {
   CoulombSystem system;
   const int point = system.add_mover(3), carried = system.add_mover(6), loose = system.add_mover(3);
   for (const int other : {carried, loose}) {
@@ -223,8 +224,8 @@ TEST_CASE("impulses also change velocities that no contact uses", "[coulomb]") {
 }
 
 TEST_CASE("nearly equal contacts end an iteration that stalls", "[coulomb]") {
-  // A body falls on four points. A fifth contact is a micrometre from one of them, with a slightly different
-  // approach rate that only a huge impulse could equalise.
+  // A body has four contacts with the ground. A fifth contact is a micrometre from one of them, with a
+  // slightly different approach rate that only a huge impulse could equalise.
   CoulombSystem system;
   system.add_mover(6);
   for (int k = 0; k < 5; ++k) {

@@ -9,8 +9,9 @@
 
 namespace pliant {
 
-/// Members of a material law, here and in local/solid: `of`, the argument of the energy; `constant`; the
-/// energy density; the stress P = dW/dF; its derivative along dF. T: double, Pack or a dual number.
+/// Every material law, here and in local/solid, has these members: `of`, the argument of the energy;
+/// `constant`; density(), which returns W; stress(), which returns P = dW/dH (dW/dF for large deformation);
+/// stress_along(), which returns the derivative of P along dH. T: double, Pack or a dual number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
   /// Whether the derivative of P does not depend on the gradient.

@@ -17,7 +17,7 @@ namespace pliant {
 class NodalEnergy {
  public:
   /// The argument x of E.
-  ///   displacement   E = 1/2 d^T K d is quadratic in the displacements d and acts on d alone
+  ///   displacement   E = 1/2 d^T K d is quadratic in the displacements d; its forces act on d alone
   ///   position       E depends on the positions p = s + d in the part's frame, Eq. (2); its forces act on
   ///                  global parameters too
   enum class Of { displacement, position };
@@ -31,10 +31,10 @@ class NodalEnergy {
   virtual ~NodalEnergy() = default;
   virtual Of of() const = 0;
   /// Returns whether E(Q d) = E(d) for every rotation Q of all displacements. Such an energy stays correct
-  /// where the reference shape under d has rotated.
+  /// where a global deformation has rotated the material locally.
   virtual bool isotropic() const { return false; }
-  /// Returns the inertia of the energy's own coordinates, which follow those of the nodes in x. Empty for
-  /// most energies.
+  /// Returns the inertia of the energy's own coordinates, which follow those of the nodes in x. The result is
+  /// empty for most energies.
   virtual VecX<double> own_inertia() const { return {}; }
 
   /// Returns E, J.
@@ -45,15 +45,16 @@ class NodalEnergy {
   virtual void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
   /// Adds the Kelvin-Voigt damping force at rates x_dot to f, for beta = 1 s. Its stress is proportional to
-  /// the rate of strain. Rigid motion of the part causes none, and its power is never positive. The force is
-  /// -K x_dot if E is quadratic in d; at rest that holds for the other energies too.
+  /// the rate of strain, so that rigid motion of the part causes no force. Its power is never positive. The
+  /// force is -K x_dot if E is quadratic in d; at rest this holds for the other energies too, except
+  /// pressure, which has no damping.
   virtual void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f,
                                  Buffer& buffer, ThreadPool* pool) const {
     add_derivative(x, x_dot, f, buffer, pool);
   }
   /// Appends the entries of K(x), without the term w w^T of w = rank_one(x), which would fill all of K.
   virtual void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
-  /// Returns w of the dense term w w^T of K. Empty if add_stiffness appends all of K.
+  /// Returns w of the dense term w w^T of K. The result is empty if add_stiffness appends all of K.
   virtual VecX<double> rank_one(const Coordinates& /*x*/) const { return {}; }
   /// Returns an upper bound on omega^2 (1/s^2) of K(x) u = omega^2 M u, computed element by element. M:
   /// diagonal of the mass matrix, for all coordinates.

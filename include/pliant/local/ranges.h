@@ -22,8 +22,9 @@ void for_ranges(int n, int length, ThreadPool* pool, Body&& body) {
   pool->run((n + length - 1) / length, std::ref(task));
 }
 
-/// Calls f(first, last) for every block of `length` numbers in [0, n); the last block may be shorter. Unlike
-/// for_ranges, keeps the blocks apart without a pool too: f may derive the block number from `first`.
+/// Calls f(first, last) for every block of `length` indices in [0, n); the last block may be shorter. Unlike
+/// for_ranges, it calls f once for each block without a pool too, so that f may derive the block number from
+/// `first`.
 template <class F>
 void for_blocks(int n, int length, ThreadPool* pool, F&& f) {
   auto task = [&](int block) { f(block * length, std::min(n, (block + 1) * length)); };

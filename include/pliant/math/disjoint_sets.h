@@ -1,5 +1,5 @@
 // Disjoint sets of the integers 0 ... n - 1: groups of elements that are connected directly or through
-// others. Path halving (Tarjan and van Leeuwen 1984).
+// others. Searches shorten their paths by path halving (Tarjan and van Leeuwen 1984).
 #pragma once
 
 #include <cstddef>

@@ -65,7 +65,7 @@ class Formula {
   bool is_constant() const;
   /// Returns whether the formula contains abs, min, max, step or smoothstep.
   bool has_branches() const { return has_branches_; }
-  /// Returns a hash of the branches that these functions use at t.
+  /// Returns a hash of the branches that abs, min, max, step and smoothstep use at t.
   std::uint64_t branches(double t) const;
 
   /// The operations of the postfix program.

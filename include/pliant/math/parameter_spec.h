@@ -14,15 +14,15 @@ struct Range {
 /// How the position of a material point depends on a parameter. This decides which quadrature of the mass is
 /// exact (include/pliant/part/README.md).
 enum class Follows {
-  affine,   ///< its displacement is affine in the rest position
-  section,  ///< affine in (x, y) within each section z = const of the rest shape
-  ring,     ///< affine in (x, y) along each material ring (u, w) = const
+  affine,   ///< the displacement of the point is affine in its rest position
+  section,  ///< the displacement is affine in (x, y) within each section z = const of the rest shape
+  ring,     ///< the displacement is affine in (x, y) along each material ring (u, w) = const
   free,     ///< none of the above
 };
 
 /// The physical quantity of a parameter.
 enum class Quantity {
-  length,    ///< m; scales with the body
+  length,    ///< m; scales with the size of the part
   angle,     ///< rad
   exponent,  ///< squareness of a superquadric
   ratio,     ///< any other number without a unit

@@ -41,7 +41,7 @@ inline std::vector<QuadratureNode> make_gauss_rule(int n) {
 }  // namespace detail
 
 PLIANT_INLINE std::vector<QuadratureNode> gauss_rule(int n) {
-  // Cached: loading a scene needs a few rules many times.
+  // The rules are cached, because loading a scene needs a few rules many times.
   static std::mutex busy;
   static std::map<int, std::vector<QuadratureNode>> made;
   const std::lock_guard<std::mutex> lock(busy);

@@ -8,7 +8,8 @@
 
 namespace pliant {
 
-/// Returns the rotation matrix R (body to world) of a quaternion (w, x, y, z) of any nonzero length.
+/// Returns the rotation matrix R (from the body frame to the world frame) of a quaternion (w, x, y, z) of any
+/// nonzero length.
 template <class S>
 Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);

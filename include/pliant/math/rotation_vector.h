@@ -14,8 +14,8 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   const double size = plain(x);
   if (size > 0.1) {
     const T sine = math::sqrt(sine2);
-    // Near a half turn the sine is exact and the angle comes from it. Near a right angle the angle comes from
-    // the cosine, because the slope of asin is infinite there.
+    // Near a half turn the angle comes from the sine, which is accurate there. Near a right angle the angle
+    // comes from the cosine, because the slope of asin is infinite there.
     const T angle = plain(cosine) < -0.7 ? T(T(kPi / 2) + math::acos(sine)) : T(math::acos(cosine));
     return angle / sine;
   }
@@ -26,8 +26,8 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   return sum;
 }
 
-/// A rotation whose cosine is at or below this value is treated as a half turn. The sign of its axis is not
-/// defined, so rotation_vector first turns it by kOffHalfTurn.
+/// A rotation with cos theta at or below this value is treated as a half turn. The sign of its axis is not
+/// defined, so rotation_vector first rotates Q by kOffHalfTurn about the nearest coordinate axis.
 inline constexpr double kHalfTurn = -1 + 1e-12;
 inline constexpr double kOffHalfTurn = 1e-5;  // rad
 

@@ -19,7 +19,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Relative difference of two rates below which they count as equal.
+/// Relative difference below which two values or two rates are treated as equal.
 inline constexpr double kKinkRounding = 1e-12;
 
 struct SplineEndRates {
@@ -92,8 +92,8 @@ class FormulaFunction final : public TimeFunction::Impl {
   Taylor2<double> at(double t) const override { return formula_.at(t); }
 
   Kink first_kink(double after, double until) const override {
-    constexpr int samples = 4;       // of the interval
-    constexpr int max_changes = 64;  // of branches between two samples
+    constexpr int samples = 4;       // number of samples in the interval
+    constexpr int max_changes = 64;  // maximum number of changes of branches between two samples
     if (!formula_.has_branches()) return {};
     double low = after;
     std::uint64_t branches = formula_.branches(low);

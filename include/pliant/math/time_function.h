@@ -15,7 +15,7 @@
 
 namespace pliant {
 
-/// A time (s) at which a function of time jumps, or its rate does. Infinite time: no such time.
+/// A time (s) at which a function of time or its rate jumps. An infinite time means that there is no kink.
 struct Kink {
   double time = std::numeric_limits<double>::infinity();
   bool jumps = false;  ///< whether the value jumps, and not only the rate
@@ -51,7 +51,7 @@ class TimeFunction {
   double value(double t) const { return at(t).v; }
   bool is_constant() const { return impl_ == nullptr; }
   /// Returns the first kink in the interval (after, until] (s). The search in a formula samples a few times
-  /// of the interval and can miss kinks in a long one; the two ends of a step are near enough.
+  /// of the interval. It can miss kinks in a long interval; the interval of one step is short enough.
   Kink first_kink(double after, double until) const {
     return impl_ && after < until ? impl_->first_kink(after, until) : Kink();
   }
@@ -94,7 +94,8 @@ struct TimeVector {
     return component[0].is_constant() && component[1].is_constant() && component[2].is_constant();
   }
 
-  /// The mean rate over a time interval, and the largest difference of the rate from it, sampled at kMoments.
+  /// The mean rate over a time interval, and the largest distance of the rate from this mean, sampled at
+  /// kMoments.
   struct Passage {
     Vec3<double> rate;
     double beside;

@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-/// The values of a block matrix and then of its factor.
+/// A block matrix; after factor() its factor.
 template <class S>
 class BlockFactor {
  public:
@@ -28,7 +28,7 @@ class BlockFactor {
     values_.assign(at(pattern.values()), S(0.0));
     pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// Sets the scale of the pivot of a row (see Pivots::measure_by).
+  /// Sets a larger scale for the pivot of a row (see Pivots::measure_by).
   void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
   /// Returns the entries of a block, by columns. offset: from BlockPattern::place.
   S* block(int offset) { return values_.data() + offset; }
@@ -95,7 +95,7 @@ class BlockFactor {
   bool held(int row) const { return pivots_.held(row); }
   /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
-  /// Returns the smallest accepted pivot relative to its diagonal entry: a measure of the digits lost.
+  /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost.
   double smallest_pivot() const { return pivots_.smallest(); }
 
  private:

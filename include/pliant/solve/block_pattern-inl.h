@@ -33,8 +33,9 @@ PLIANT_INLINE std::vector<int> minimum_degree_order(const std::vector<int>& firs
 PLIANT_INLINE std::vector<int> cardinality_order(const std::vector<int>& first,
                                                  const std::vector<int>& neighbour) {
   const std::size_t n = first.size() - 1;
-  // Stack s contains the nodes that have s numbered neighbours and no number yet. A node that gains a
-  // neighbour is pushed on the next stack; its old entry remains and is skipped later.
+  // Nodes are numbered from the last place to the first. Stack s contains the nodes without a number that
+  // have s numbered neighbours. A node that gains a numbered neighbour is pushed on the next stack; its old
+  // entry remains and is skipped later.
   std::vector<std::vector<int>> stack(1);
   std::vector<int> numbered(n, 0), order(n);
   for (std::size_t i = n; i-- > 0;) stack[0].push_back(static_cast<int>(i));
@@ -100,7 +101,7 @@ PLIANT_INLINE Elimination eliminate(const std::vector<int>& sizes,
   auto size_at = [&](int place) -> long {
     return sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(place)])];
   };
-  // Fill-in: the places below the diagonal of a column are added to the column of its first block below.
+  // Fill-in: the places below the diagonal of a column are added to the column at the first of these places.
   result.below.resize(n);
   std::vector<long> products(n);  // cost of each column
   for (std::size_t j = 0; j < n; ++j) {

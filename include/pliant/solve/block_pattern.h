@@ -1,6 +1,6 @@
 // The pattern of a symmetric matrix of small blocks and of its factor L D L^T. It is computed once: the order
-// of elimination, the fill-in, the list of block products, and the final part that is factored as a dense
-// matrix.
+// of elimination, the fill-in, the list of block products, and the last rows and columns, which are factored
+// as one dense matrix.
 #pragma once
 
 #include <utility>
@@ -11,17 +11,16 @@ namespace pliant {
 /// Largest number of rows of a block.
 inline constexpr int kMaxBlock = 6;
 
-/// A function that returns an order of elimination: the node at each place. The neighbours of node i are
-/// neighbour[first[i]] ... neighbour[first[i + 1] - 1].
+/// A function that returns an order of elimination: the node at each place. A place is a position in the
+/// order, from 0. The neighbours of node i are neighbour[first[i]] ... neighbour[first[i + 1] - 1].
 using NodeOrder = std::vector<int> (*)(const std::vector<int>& first, const std::vector<int>& neighbour);
 /// Returns the approximate minimum degree order, computed by Eigen.
 std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 /// Returns the order of a maximum cardinality search (Tarjan & Yannakakis 1984). It has no fill-in if an
-/// order without fill-in exists; for the joint systems of chains and trees it does.
+/// order without fill-in exists, as for the joint systems of chains and trees.
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 
-/// Minimum number of rows of the dense matrix. A smaller final part is factored by blocks, which costs no
-/// more.
+/// Minimum number of rows of the dense matrix. A smaller matrix is factored by blocks, which costs no more.
 inline constexpr int kFewDense = 18;
 
 /// An order of elimination for a graph whose nodes have several rows each, with its fill-in and its cost.
@@ -76,7 +75,7 @@ class BlockPattern {
     int row;           ///< the first row of the node in the vectors, which are in the order of the nodes
     int diagonal;      ///< offset of the diagonal block
     int first, last;   ///< range of the blocks below the diagonal
-    int first_update;  ///< first of its updates: one for each pair (a, b) of its blocks, a >= b
+    int first_update;  ///< first of the column's updates: one for each pair (a, b) of blocks, a >= b
   };
   /// Returns the columns in the order of elimination; the columns of the dense matrix are the last ones.
   const std::vector<Column>& columns() const { return columns_; }
@@ -84,7 +83,8 @@ class BlockPattern {
   /// Returns the offsets of the blocks that the updates of each column change. The dense matrix has no
   /// updates.
   const std::vector<int>& updates() const { return updates_; }
-  /// Returns the first column of the dense matrix: 0 for a small star, nodes() for a chain.
+  /// Returns the first column of the dense matrix: 0 if the whole matrix is dense, nodes() if there is no
+  /// dense matrix, for example for a chain.
   int first_dense() const { return first_dense_; }
   /// Returns the rows of the dense matrix, as rows of the vectors.
   const std::vector<int>& dense_rows() const { return dense_rows_; }

@@ -1,6 +1,6 @@
 // The sparse Cholesky factorisation of SuiteSparse (CHOLMOD) for large systems, in the library
-// pliant::suitesparse. Its supernodal part is under the GNU General Public License; the core library does not
-// link it.
+// pliant::suitesparse. Its supernodal module is under the GNU General Public License; the core library does
+// not link it.
 #pragma once
 
 #include <memory>

@@ -12,7 +12,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Rounding of a row relative to the sum of its terms. A row violated by at most this is satisfied.
+/// Rounding error of a row relative to the sum of its terms. A row that is violated by at most this is
+/// treated as satisfied.
 inline constexpr double kComplementarityRounding = 1e-14;
 /// A row depends on the active rows if its Schur complement is at most this fraction of its diagonal entry.
 inline constexpr double kDependentOneSidedRow = 1e-12;

@@ -23,7 +23,7 @@ class CoulombLaw {
   Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;
-  bool isotropic_ = false;  ///< whether W is a multiple of the identity, for example between two mass points
+  bool isotropic_ = false;  ///< whether W is a multiple of the identity, for example between two point masses
   Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< entries of W between the tangents and the normal
   // Eigenvalues and eigenvectors of A = W_tt - W_tn W_nt / W_nn, the Schur complement of the normal.
   Eigen::Array2d stiffness_ = Eigen::Array2d::Ones();

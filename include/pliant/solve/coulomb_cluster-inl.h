@@ -20,8 +20,8 @@ namespace detail {
 /// Tolerances of the sweeps; the larger one is used. kSweepExact is relative to the largest contact velocity
 /// without impulses. kSweepUlps is in units of the rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
-/// kSweepExact for clusters with points (movers of three velocities, nodes of a mesh). Points are many and
-/// weakly coupled.
+/// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
+/// Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPoints = 1e-6;
 /// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation.
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
@@ -30,11 +30,11 @@ inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPoints{{{12, 4
 inline constexpr double kSweepWorse = 4;
 /// Relative regularisation of the extrapolation, in case that sweeps are linearly dependent.
 inline constexpr double kSweepRegularisation = 1e-14;
-/// kAcceptableResidual for large clusters and for clusters with points; and the compliance of contacts in the
-/// second search, as a fraction of the diagonal of W.
+/// First value: kAcceptableResidual for large clusters and for clusters with point masses. Second value: the
+/// compliance of contacts in the second search, as a fraction of the diagonal of W.
 inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
 /// The result of the search with compliant contacts is preferred if its residual is less than this multiple
-/// of the residual of the first search. Its impulses are bounded.
+/// of the residual of the first search, because compliant contacts have bounded impulses.
 inline constexpr double kCompliantPreference = 2;
 /// A search stalls if a round leaves more than this fraction of the residual of the round before. Nearly
 /// equal contacts can leave a residual that only unreasonably large impulses would remove.
@@ -48,8 +48,8 @@ inline constexpr int kMaxSweepHistory = 8;
 using SweepGram =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSweepHistory, kMaxSweepHistory>;
 
-/// Moves `now` to the point at which the linear model of the residual r is smallest. G: products of the
-/// columns of dr; filled: number of columns. Changes nothing if the linear system is singular.
+/// Changes `now` to the impulses for which the linear model of the residual r is smallest. G: scalar products
+/// of the columns of dr; filled: number of columns. Changes nothing if the linear system is singular.
 inline void extrapolate_sweeps(const SweepGram& G, int filled, CoulombScratch::Sweeps& sweeps) {
   auto& [now, next, last, r, last_r, weight, dr, dp] = sweeps;
   const Eigen::Index n = r.size();
@@ -261,8 +261,8 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
   return false;
 }
 
-/// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with points
-/// need none, because points are weakly coupled.
+/// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with point
+/// masses need no warm start, because point masses are weakly coupled.
 PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !has_points_;
 }
@@ -287,7 +287,7 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   VecX<double> previous;  // the impulses of the previous round
   for (const auto* round = first; round != last; ++round) {
     const auto& [max_sweeps, history] = *round;
-    if (many && history == 0) continue;  // too slow, like Newton's method for many points
+    if (many && history == 0) continue;  // too slow, as is Newton's method for many point masses
     if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_points_ && residual() <= exact_)) return true;
     if (!(many && has_points_) && newton(false)) return true;
     const double error = residual();
@@ -301,9 +301,8 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
-/// If the search fails, it is repeated with compliant contacts, for which a solution exists. It fails, for
-/// instance, if joints and contacts contradict each other. kCompliantPreference decides between the two
-/// results.
+/// If the search fails, for instance because joints and contacts contradict each other, it is repeated with
+/// compliant contacts, for which a solution exists. kCompliantPreference decides between the two results.
 PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
   soften(0);
   if (size_ == 1) {

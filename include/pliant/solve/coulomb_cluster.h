@@ -20,14 +20,15 @@ inline constexpr double kAcceptableResidual = 1e-6;
 
 }  // namespace detail
 
-/// The law of a contact, linearised about its impulse: F + T du + D dp = 0.
+/// The law of a contact, linearised about its impulse: F + T du + D dp = 0 (coulomb_newton-inl.h).
 struct LinearContactLaw {
   int contact = 0;
   Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: the velocity at which the law is linearised
   Mat3<double> T = Mat3<double>::Zero(), D = T;
 };
 
-/// The linear systems of Newton's method, and the position of the pushes and sides of the contacts in them.
+/// The linear systems of Newton's method, and the positions of the contacts' pushes and sides in these
+/// systems.
 struct MoverCoupling {
   std::vector<MoverSystem> clusters;       ///< the system of each cluster
   std::vector<int> numbers;                ///< number of each mover in its system; -1 if no contact pushes it
@@ -44,7 +45,7 @@ struct CoulombScratch {
   } sweeps;
   struct Linear {
     std::vector<LinearContactLaw> open;              ///< contacts with a normal impulse
-    std::vector<std::pair<int, Vec3<double>>> drop;  ///< other contacts, with the change that makes p zero
+    std::vector<std::pair<int, Vec3<double>>> drop;  ///< impulses that become zero: contact, and change of p
   } linear;
   MoverCoupling coupling;
   VecX<double> best;    ///< the best impulses found so far
@@ -54,8 +55,8 @@ struct CoulombScratch {
 /// One cluster of a contact problem.
 class CoulombCluster {
  public:
-  /// number: the cluster. The velocities of the system must be those with its impulses. enough: see
-  /// CoulombSystem::solve.
+  /// number: index of the cluster. The velocities of the system must include the present impulses. enough:
+  /// see CoulombSystem::solve.
   CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
   /// Finds the impulses and stores them in the system; adds the residual and the cost to result.
   void solve(CoulombResult& result);
@@ -93,7 +94,7 @@ class CoulombCluster {
   int size_;
   double enough_;
   CoulombScratch& scratch_;
-  bool has_points_ = false;  // whether the cluster contains points
+  bool has_points_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
   double scale_ = 0;         // the largest contact velocity without impulses
   double exact_ = 0;         // residuals up to this velocity are rounding
   double acceptable_ = 0;    // residuals up to this velocity are acceptable

@@ -5,8 +5,8 @@
 // With the sides S, du = S dx, and the pushes Y, dx = sum Y dp over all contacts, the velocities of the
 // movers change by
 //   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
-// The unknowns are velocities and not impulses: each mover is coupled to few others, often by more rows than
-// it has velocities.
+// The unknowns are velocities and not impulses, because each mover is coupled to few others, often by more
+// contact rows than it has velocities.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,14 @@ inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
 /// Maximum size of the factor, in multiples of the diagonal blocks of the movers. Above it (many bodies
 /// packed closely on all sides), sweeps need less time and memory.
 inline constexpr double kMaxContactFill = 10;
-/// The residual is reduced to this fraction of the exact level, because one more step does that. The second
-/// value is for warm starts, so that residuals do not accumulate from time step to time step.
+/// Newton's method reduces the residual to this fraction of exact_level(), for which one more step is usually
+/// enough. The second value is for warm starts, so that residuals do not accumulate from time step to time
+/// step.
 inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
-/// Weight of the proximal term, which keeps linearly dependent impulses near their present values. It
-/// decreases by the factor in each step, from the first value (kProximalNear for warm starts) to the least,
-/// below which rounding outweighs the gain.
+/// Weight of the proximal term, which keeps linearly dependent impulses near their present values. In each
+/// step it is multiplied by kProximalFactor, from kFirstProximal (kProximalNear for warm starts) down to
+/// kMinProximal, below which rounding outweighs the gain. The values ...OfPoints are for clusters with point
+/// masses.
 inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8,
                         kProximalNear = 1e-5;
 inline constexpr double kProximalFactorOfPoints = 0.7, kMinProximalOfPoints = 1e-5;
@@ -41,7 +43,7 @@ inline constexpr double kFutileFarOff = 1e3, kProximalGrowth = 10;
 /// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
 inline constexpr int kMaxMoverVelocities = 1000;
 
-/// Adds Y T S to a block: a push of N velocities and a side of N velocities.
+/// Adds Y T S to a block, for a push Y and a side S of N velocities each.
 template <int N>
 void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const MoverSystem::Block& block,
                          MoverSystem& movers) {
@@ -51,8 +53,8 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
 
 }  // namespace detail
 
-/// Linearises the laws of all contacts about the present impulses. The impulse of a separating contact is set
-/// to zero, and so is the friction of a contact without normal impulse.
+/// Linearises the laws of all contacts about the present impulses. Lists the changes that set the impulses of
+/// separating contacts, and tangential impulses of contacts without friction, to zero.
 PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
   auto& [open, drop] = scratch_.linear;
   open.clear();

@@ -13,8 +13,7 @@
 namespace pliant {
 
 namespace detail {
-/// Fraction of its largest diagonal entry that is added to the diagonal of W of a contact, so that W has full
-/// rank.
+/// The diagonal of W of each contact grows by this fraction of its largest entry, so that W has full rank.
 inline constexpr double kContactRegularisation = 1e-12;
 }  // namespace detail
 

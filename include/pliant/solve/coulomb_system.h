@@ -2,9 +2,9 @@
 // joints connect). The impulses p_k of the contacts change the velocities x of the movers and the contact
 // velocities u_k:
 //   x = x_0 + sum_k Y_k p_k,   u_k = c_k + J_k x
-// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, one for each mover at the
-// contact; Y_k consists of pushes, one for each mover that the impulse changes. A cluster is a set of movers
-// that contacts connect; each cluster is solved separately. See README.md of this folder.
+// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, each for some velocities
+// of a mover at the contact. Y_k consists of pushes, one for each mover that the impulse changes. A cluster
+// is a set of movers that contacts connect; each cluster is solved separately. See README.md of this folder.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,9 @@ namespace pliant {
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
-  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the fastest contact
-  /// velocity (above 1e-2 for clusters with more than 100 contacts or with points, which converge less).
+  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the largest contact
+  /// velocity without impulses (above 1e-2 for clusters with more than 100 contacts or with point masses,
+  /// which converge less).
   int fallbacks = 0;
 };
 
@@ -36,7 +37,7 @@ class CoulombSystem {
   using Side = Eigen::Map<Eigen::Matrix3Xd>;
   using Push = Eigen::Map<MatX<double>>;
 
-  /// Adds a mover with `size` velocities and returns its number. A mover of size 3 is a point.
+  /// Adds a mover with `size` velocities and returns its number. A mover of size 3 is a point mass.
   int add_mover(int size);
   /// Adds a contact with coefficient of friction mu. Its rows: normal, two tangents.
   void add_contact(double mu);
@@ -80,8 +81,8 @@ class CoulombSystem {
   /// Computes x += factor Y_k p_k.
   void add_change(int k, double factor, VecX<double>& x) const;
 
-  /// Returns whether solve() can use the impulse of contact k as a warm start. Valid after solve(). False if
-  /// the contact is the only one of its cluster or if the cluster contains points.
+  /// Returns whether solve() can use the impulse of contact k as a warm start. Valid after solve(). The
+  /// result is false if the contact is the only one of its cluster or if the cluster contains point masses.
   bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
   /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
   /// output. enough: a velocity; smaller violations of the law are accepted. No contact or mover can be added
@@ -121,9 +122,9 @@ class CoulombSystem {
   // The search uses only the velocities that a side depends on. A large mover (a deformable part, or parts
   // with many joints) has many more velocities than its contacts need.
   std::vector<int> used_;         // indices of these velocities in x
-  std::vector<int> used_movers_;  // index of the first one of each mover, and the end
+  std::vector<int> used_movers_;  // first used velocity of each mover, and the end
   std::vector<Term> used_sides_, used_pushes_;
-  VecX<double> x0_, x_;                // their values: without impulses, and with the present impulses
+  VecX<double> x0_, x_;  // values of the used velocities: without impulses, with the present impulses
   std::vector<int> order_, clusters_;  // contacts sorted by cluster; start of each cluster, and the end
   bool complete_ = false;
   std::unique_ptr<CoulombScratch> scratch_;

@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// A dense matrix and then its factor.
+/// A dense matrix; after factor() its factor.
 template <class S>
 class DenseFactor {
  public:

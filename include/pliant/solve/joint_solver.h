@@ -14,8 +14,8 @@ namespace pliant {
 struct JointSolver {
   enum class Choice { automatic, blocks, augmented };
   Choice choice = Choice::automatic;
-  /// Factorisation of the augmented matrix. Implicit methods of integration use it for the stiffness of nodes
-  /// too.
+  /// Factorisation of the augmented matrix. Implicit methods of integration use it for the stiffness matrix
+  /// of nodes too.
   MakeSparseFactor make_factor = make_eigen_factor;
   /// A fill-reducing order for the blocks. The solver compares it with the cardinality search and uses the
   /// cheaper one.

@@ -100,7 +100,7 @@ PLIANT_INLINE void MoverSystem::clear() {
     Eigen::Map<MatX<double>>(numbers_.data() + mover.numbers, mover.size, mover.size).setIdentity();
 }
 
-/// Eliminates mover k: x_k = b_k - sum of A_kj x_j over its remaining neighbours.
+/// Eliminates mover k: x_k = (1 + A_kk)^-1 (b_k - sum of A_kj x_j over its remaining neighbours).
 template <int N>
 void MoverSystem::eliminate(const Mover& k) {
   using Numbers = Eigen::Matrix<double, N, N>;

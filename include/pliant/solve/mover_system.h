@@ -19,7 +19,7 @@ class MoverSystem {
   /// Adds a block of A for the movers i and j.
   void couple(int i, int j);
   /// Computes the order of elimination and the storage. Returns false, and the system cannot be solved, if
-  /// the storage would exceed `most` times the diagonal blocks of the movers.
+  /// the storage would exceed `max_fill` times that of the diagonal blocks of the movers.
   bool order(double max_fill);
 
   bool empty() const { return movers_.empty(); }
@@ -39,7 +39,7 @@ class MoverSystem {
 
   /// Sets A = 0 and b = 0.
   void clear();
-  /// Adds to b, from a row on.
+  /// Adds a vector to b, starting at a row.
   template <class Vector>
   void add(int row, const Eigen::MatrixBase<Vector>& b) {
     b_.segment<Vector::RowsAtCompileTime>(row, b.rows()) += b;
@@ -53,15 +53,15 @@ class MoverSystem {
   }
   /// Solves the system. The solution is not finite if the system is singular.
   void solve();
-  /// Returns `size` values of x, from a row on.
+  /// Returns `size` values of x, starting at a row.
   auto change(int row, int size) const { return b_.segment(row, size); }
 
  private:
   struct Mover {
-    int size = 3, row = 0, position = 0;  ///< position: its position in the order of elimination
-    bool uniform = true;                  ///< whether its remaining neighbours have its size
+    int size = 3, row = 0, position = 0;  ///< position: in the order of elimination
+    bool uniform = true;                  ///< whether all its remaining neighbours have its size
     std::vector<int> neighbours;  ///< neighbours that remain when it is eliminated, in ascending order
-    std::size_t numbers = 0;      ///< start of its diagonal block, then of the blocks above and left of it
+    std::size_t numbers = 0;      ///< start of its diagonal block; then, for each neighbour, A_kj and A_jk
     std::size_t targets = 0;      ///< start of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }

@@ -16,12 +16,13 @@ namespace pliant {
 
 /// The rule that decides which rows are dependent.
 enum class RankRule {
-  /// Rows whose relative pivot is at most Pivots::kVanished.
+  /// A row is dependent if its relative pivot is at most Pivots::kVanished.
   decide,
-  /// The rows of the previous factorisation, and rows whose relative pivot is at most Pivots::kRounding.
-  /// Within a step, joints are slightly open, which makes dependent rows look independent.
+  /// The dependent rows are those of the previous factorisation, and rows whose relative pivot is at most
+  /// Pivots::kRounding. Within a step, joints are slightly open, which makes dependent rows look independent.
   keep,
-  /// Rows whose relative pivot is at most Pivots::kRounding, for positions next to a singular one.
+  /// A row is dependent if its relative pivot is at most Pivots::kRounding. This rule is for positions next
+  /// to a singular position.
   rounding
 };
 
@@ -29,12 +30,12 @@ enum class RankRule {
 template <class S>
 class Pivots {
  public:
-  /// Relative size, with respect to the diagonal entry, at or below which a pivot vanishes: by
+  /// Size relative to its scale (set_entry, measure_by) at or below which a pivot vanishes: by
   /// RankRule::decide, and by the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
 
-  /// Starts a matrix with a number of rows. RankRule::keep keeps the excluded rows; the number of rows must
-  /// not change.
+  /// Starts a new matrix with this number of rows. RankRule::keep keeps the excluded rows; the number of rows
+  /// must not change.
   void clear(int rows, RankRule rule) {
     keep_ = rule == RankRule::keep;
     vanished_ = rule == RankRule::decide ? kVanished : kRounding;
@@ -58,7 +59,8 @@ class Pivots {
   /// Stores the pivot of a row and returns true; or returns false and excludes the row if the pivot vanishes.
   bool accept(int row, const S& pivot) {
     const double scale = entry_[at(row)], value = plain(pivot);
-    // A scale that is not finite excludes no row; the check of the solution for finite numbers finds it.
+    // A scale that is not finite excludes no row; the check of the solution for finite numbers detects such a
+    // scale.
     if ((keep_ && held(row)) || (std::isfinite(scale) && !(value > vanished_ * scale))) {
       held_[at(row)] = 1;
       inverse_[at(row)] = S(0.0);

@@ -41,7 +41,7 @@ class SymmetricFactor {
         L[k] = scaled;
       }
       const double entry = plain(A(i, i));
-      // A NaN excludes no coordinate; the check of the solution for finite numbers finds it.
+      // A NaN excludes no coordinate; the check of the solution for finite numbers detects the NaN.
       const bool vanished = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
       L[i] = vanished ? S(1.0) : S(1.0) / d;
       if (!vanished) continue;
@@ -82,8 +82,8 @@ class SymmetricFactor {
 
  private:
   int n_ = 0;
-  /// L by rows, with 1 / D_i in place of the unit diagonal. It is on the heap, so that the workspaces of the
-  /// parts of a chain are close together in memory.
+  /// L by rows, with 1 / D_i in place of the unit diagonal. The array is on the heap, so that the workspaces
+  /// of the parts of a chain are close together in memory.
   VecX<S> rows_;
   std::bitset<kMaxVelocities> held_;
 };

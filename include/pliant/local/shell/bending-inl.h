@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Batches that one task evaluates.
+/// Number of batches that one task of the thread pool evaluates.
 inline constexpr int kBendingRange = 256;
 /// Rest angles up to this, rad, are rounding errors of a flat mesh.
 inline constexpr double kFlatHinge = 1e-12;
@@ -35,7 +35,7 @@ inline Mat3<double> mid_edge_stiffness(const Edges<double>& e, const Sheet& shee
   return Q;
 }
 
-/// Returns the nodes a, b, c, d of every edge between two triangles, one column for each.
+/// Returns the nodes a, b, c, d (hinge.h) of every edge between two triangles, one column for each edge.
 inline Eigen::Matrix4Xi hinge_nodes(const ShellMesh& mesh, const std::vector<ShellEdge>& edges) {
   const auto n = std::count_if(edges.begin(), edges.end(), [](const ShellEdge& e) { return e.inside(); });
   Eigen::Matrix4Xi nodes(4, n);
@@ -105,7 +105,7 @@ MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet
   }
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const ShellEdge& edge = edges_[e];
-    // Enters the edge as edge k of triangle t; returns the index of its moment there.
+    // Registers edge e as edge k of triangle t. Returns the index of the moment at this edge of the triangle.
     auto attach = [&](int t, int k, double side) {
       Triangles& triangles = triangles_[static_cast<std::size_t>(t / Pack::kLanes)];
       const auto corner = static_cast<std::size_t>(k), lane = static_cast<std::size_t>(t % Pack::kLanes);
@@ -136,7 +136,8 @@ std::vector<double> MidEdgeBending<Hinges>::rest_angles(const ShellMesh& mesh) c
   return angles;
 }
 
-/// Returns the phi that minimise 1/2 sum alpha Q alpha for angles theta: the normals of the rest shape.
+/// Returns the phi (rad) that minimise 1/2 sum alpha Q alpha for the angles theta of the hinges. They define
+/// the normals of the rest shape.
 template <class Hinges>
 VecX<double> MidEdgeBending<Hinges>::rest_rotations(const double* angles) const {
   const PerEdge none{0.0, 0.0, 0.0};
@@ -178,11 +179,11 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh) {
     set_coupling(mesh, t, angles.data(), phi.data());
 }
 
-/// Computes C of triangle t (in free lanes, of the last triangle). The curvature at rest is
+/// Computes C of triangle t; a free lane receives C of the last triangle. The curvature at rest is
 ///   b = 1/A sum_k alpha_k |e_k| n_k n_k^T,
 /// and a strain eps of the triangle changes the curvature by
 ///   kappa = 1/A sum_k alpha_k (n_k . eps n_k) |e_k| n_k n_k^T - (b eps + eps b)/2,
-/// because alpha_k is measured along an edge that moves. C q is the alpha of this kappa.
+/// because alpha_k is measured along an edge that moves. C q is the alpha that gives this kappa.
 template <class Hinges>
 void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh, int t, const double* angles,
                                           const double* phi) {
@@ -205,8 +206,8 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh, int t, const do
     Mat3<double> kappa = -0.5 * (b * B[l] + B[l] * b);
     for (std::size_t k = 0; k < 3; ++k)
       kappa += rest[k][lane] * across[k].cwiseProduct(B[l]).sum() * e[k].norm() / area * across[k];
-    // The component of kappa along n_k n_k^T. Dual to t_k t_k^T is the tensor -(e_i e_j^T + e_j e_i^T)/(8
-    // A^2).
+    // alpha_k from the component of kappa along n_k n_k^T. With t_k = |e_k| n_k and the other two edges i and
+    // j, the tensor dual to t_k t_k^T is -(e_i e_j^T + e_j e_i^T)/(8 A^2).
     for (std::size_t k = 0; k < 3; ++k)
       triangles.C[k][l].set(lane, -e[k].norm() * e[(k + 1) % 3].dot(kappa * e[(k + 2) % 3]) / (4 * area));
   }
@@ -407,11 +408,11 @@ void MidEdgeBending<Hinges>::add_edge(int t, int k, double moment, const Coordin
   const ShellEdge& edge = edges_[static_cast<std::size_t>(e)];
   const bool left = edge.left == t;
   const int own = triangle_nodes_(k, t);
-  int across = own;  // a boundary edge has no opposite corner; its entries are 0
+  int across = own;  // a boundary edge has no opposite corner; the terms of this corner are 0
   if (edge.inside()) {
     across =
         left ? triangle_nodes_(edge.right_corner, edge.right) : triangle_nodes_(edge.left_corner, edge.left);
-    // The corners a, b, c, d of the hinge among those of the triangle.
+    // Numbers of the hinge's corners a, b, c, d among the six corners of `Stiffness`.
     const std::array<int, 4> place{left ? i : j, left ? j : i, left ? k : 3 + k, left ? 3 + k : k};
     const int batch = e / Pack::kLanes, at = e % Pack::kLanes;
     const Corners now = hinge_batches_.corners(x, batch), gradient = hinges_.gradient(batch, now);

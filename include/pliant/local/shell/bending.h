@@ -10,9 +10,9 @@
 //   E = 1/2 sum over triangles of alpha Q alpha,
 //   Q_kl = D/A [(1 - nu)(e_k . e_l)^2/(|e_k||e_l|) + nu |e_k||e_l|]   (D: sheet.h).
 // On a curved rest shape alpha also has a term C q of the triangle's own strain q (edge_strain.h), which
-// makes kappa the bending strain of Koiter and Sanders. The element converges on any mesh; dtheta alone does
-// not. phi has rotary inertia rho t^3/12 but no momentum, and rigid motion leaves it at rest. Boundary edges
-// are free of moments.
+// makes kappa the bending strain of Koiter and Sanders. The element converges on any mesh; an energy of
+// dtheta alone does not. phi has the rotary inertia rho t^3/12 for each unit of area. It adds nothing to the
+// momentum of the part, and rigid motion does not change it. Boundary edges are free of moments.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ template <class Hinges>
 class MidEdgeBending final : public NodalEnergy {
  public:
   /// area_density: mass of the shell for each unit of area, kg/m^2. Throws std::invalid_argument unless it is
-  /// positive and finite, and as Sheet::check and shell_edges.
+  /// positive and finite. Throws the errors of Sheet::check and shell_edges too.
   MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet, double area_density);
 
   Of of() const override { return Hinges::kOf; }
@@ -50,14 +50,15 @@ class MidEdgeBending final : public NodalEnergy {
   using PerEdge = std::array<Pack, 3>;
   using Corners = HingeCorners<Pack>;
   using TriangleCorners = ElementBatches<3>::Corners;
-  /// Four triangles.
+  /// Constants of four triangles.
   struct Triangles {
     PerEdge Q_diagonal, Q_off_diagonal;  ///< Q_00 Q_11 Q_22, Q_12 Q_20 Q_01, N m
     std::array<PerEdge, 3> C;            ///< C_kl, 1/m^2
     PerEdge side;                        ///< 1: the triangle is on the left of its edge; -1: on the right
-    std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< indices of phi and of dtheta
+    std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< indices of phi and of dtheta of each edge
   };
-  /// Parts of the buffer: corner forces of batches, dtheta of hinges, moments m = dE/dalpha of triangles.
+  /// Three sections of the buffer: corner forces of batches, dtheta of hinges, moments m = dE/dalpha of
+  /// triangles.
   struct Scratch {
     double *corners, *angles, *moments;
   };
@@ -80,10 +81,11 @@ class MidEdgeBending final : public NodalEnergy {
   /// Returns the tensions C^T m, N/m.
   static PerEdge tensions(const Triangles& triangles, const PerEdge& m);
   PerEdge moments_at(int batch, const double* m) const;
-  /// Computes dtheta of all hinges. angle(batch): dtheta of a batch.
+  /// Computes dtheta of all hinges. angle(batch) returns dtheta of four hinges.
   template <class Angle>
   void compute_angles(double* angles, ThreadPool* pool, Angle&& angle) const;
-  /// Computes the moments of all triangles from dtheta, phi and strain(batch), the strain of a batch.
+  /// Computes the moments of all triangles from dtheta, phi and strain(batch), which returns q of four
+  /// triangles.
   template <class Strain>
   void compute_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
                        Strain&& strain) const;
@@ -94,19 +96,20 @@ class MidEdgeBending final : public NodalEnergy {
                        ThreadPool* pool) const;
   /// Returns dE/dtheta of the hinges of a batch, N m.
   Pack hinge_moment(int batch, const double* moments) const;
-  /// Adds the forces of moments on the nodes at x and on phi.
+  /// Adds to f the forces of the moments on the nodes and on phi. x: current coordinates.
   void add_forces(const Coordinates& x, const double* moments, VecX<double>& f, double* corners,
                   ThreadPool* pool) const;
-  /// Adds the forces of moments on phi.
+  /// Adds to f the forces of the moments on phi.
   void add_own_forces(VecX<double>& f, const double* moments) const;
 
   /// Stiffness of one triangle while it is assembled.
   struct Stiffness;
   /// Returns K of triangle t at x. angles: dtheta of all hinges at x.
   Stiffness triangle_stiffness(int t, const Coordinates& x, const double* angles) const;
-  /// Adds edge k of triangle t with the given moment. The edge has a hinge unless it is a boundary edge.
+  /// Adds the terms of edge k of triangle t to its stiffness. moment: dE/dalpha at this edge, N m. A boundary
+  /// edge has no hinge.
   void add_edge(int t, int k, double moment, const Coordinates& x, Stiffness& to) const;
-  /// Adds the terms of the strain q, with the edges and tensions of the batch of the triangle.
+  /// Adds the terms of the strain q of the triangle in `lane`. edges, tension: values of its batch.
   static void add_strain(const Triangles& triangles, int lane, const Edges<Pack>& edges,
                          const PerEdge& tension, Stiffness& to);
   /// Calls visit(ElementMatrix) with the stiffness of every triangle at x.
@@ -122,7 +125,7 @@ class MidEdgeBending final : public NodalEnergy {
   bool curved_ = false;  ///< whether the rest shape is curved; C = 0 on a flat mesh
   Hinges hinges_;
   std::vector<Triangles> triangles_;
-  std::vector<std::array<int, 2>> moment_index_;  ///< of each edge: its moment on the left, on the right
+  std::vector<std::array<int, 2>> moment_index_;  ///< of each edge: indices of its left and right moment
   VecX<double> own_inertia_;
 };
 

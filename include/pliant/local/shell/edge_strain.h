@@ -1,11 +1,12 @@
 // Strain of a triangle from the change of its edges (natural strains, Argyris 1964). Edge k is opposite
-// corner k, e_k = x_(k+2) - x_(k+1). A strain eps in the plane of the triangle at rest gives
+// corner k, e_k = x_(k+2) - x_(k+1), with indices modulo 3. A strain eps in the plane of the triangle at rest
+// gives
 //   q_k = e_k . eps e_k,   eps = sum_k q_k B_k,   B_k = -(t_i t_j^T + t_j t_i^T)/(8 A^2),
 // with i, j the other two edges, t_k = e_k rotated by 90 degrees in the plane and A the area.
 //   small displacements    q_k = e_k . (d_(k+2) - d_(k+1))
 //   finite displacements   q_k = (|e_k|^2 - |e_k|_rest^2)/2, from Green's strain
-// An energy W(q) pulls the ends of edge k together with the tension tau_k = dW/dq_k along e_k. Rigid motion
-// leaves q = 0 (to first order for small displacements).
+// An energy W(q) pulls the two ends of edge k together with the force tau_k e_k, tension tau_k = dW/dq_k.
+// Rigid motion leaves q = 0 (to first order for small displacements).
 #pragma once
 
 #include <array>
@@ -30,7 +31,7 @@ inline Edges<double> edges_of(const ShellMesh& mesh, Eigen::Index t) {
   return edges_of<double>({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)});
 }
 
-/// Returns the change of q, m^2, while the edges e change by de.
+/// Returns the change of q, m^2, to first order when the edges e change by de.
 template <class T>
 std::array<T, 3> strain_change(const Edges<T>& e, const Edges<T>& de) {
   return {e[0].dot(de[0]), e[1].dot(de[1]), e[2].dot(de[2])};
@@ -48,7 +49,7 @@ Vec3<double> edge_traces(const Edges<double>& e);
 /// Returns S of the energy 1/2 q S q of a triangle of the sheet, N/m^3.
 Mat3<double> edge_stiffness(const Edges<double>& e, const Sheet& sheet);
 
-/// Returns the forces of tensions tau along the edges e on the corners, N. tau: N/m.
+/// Returns the forces on corners 0, 1 and 2, N, of tensions tau (N/m) along the edges e.
 template <class T>
 std::array<Vec3<T>, 3> corner_forces(const std::array<T, 3>& tau, const Edges<T>& e) {
   const Vec3<T> a = tau[0] * e[0], b = tau[1] * e[1], c = tau[2] * e[2];

@@ -1,9 +1,9 @@
-// Angle between two triangles that share the edge from a to b. Corner c is on the left of the edge, d on its
-// right:
+// Angle of a hinge: two triangles that share the edge from a to b. Corner c is on the left of the edge, d on
+// its right:
 //   theta = atan2(e/|e| . (n x m), n . m),   e = b - a,  n = e x (c - a),  m = (d - a) x e.
-// theta is positive on a ridge. Its gradient: moving c by z along the normal of its triangle changes theta by
-// -z/height, where height is the distance of c from the edge; d has the same form. The gradients at a and b
-// have the opposite sum, split by the foot of each height on the edge.
+// theta is positive on a ridge. If c moves by z along the normal of its triangle, theta changes by -z/height,
+// where height is the distance of c from the edge; the same holds for d. The gradients at all four corners
+// sum to zero. The foot of each height on the edge gives the shares of a and b.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Angles of all hinges (hinge.h) and strains of all triangles of a mesh since rest, with their gradients, in
-// batches of four. Bending (bending.h) uses one of two versions: linear in the displacements, or exact in the
-// positions.
+// Changes since rest of all hinge angles (hinge.h) and strains of all triangles of a mesh, with their
+// gradients, in batches of four. Bending (bending.h) uses one of two versions: linear in the displacements,
+// or exact in the positions.
 #pragma once
 
 #include <array>
@@ -51,8 +51,8 @@ class FoldingHinges {
   Edges<Pack> edges(int, const std::array<Vec3<Pack>, 3>& x) const { return edges_of(x); }
 
  private:
-  std::vector<math::SinCos<Pack>> rest_;          // of theta
-  std::vector<std::array<Pack, 3>> rest_strain_;  // |e_k|^2/2, m^2
+  std::vector<math::SinCos<Pack>> rest_;  // sine and cosine of theta at rest, as hinge_sin_cos returns them
+  std::vector<std::array<Pack, 3>> rest_strain_;  // |e_k|^2/2 at rest, m^2
 };
 
 }  // namespace pliant

@@ -64,7 +64,7 @@ void LinearMembrane::each_element(Visit&& visit) const {
       Mat3<double> S;
       S << 1, triangles.s01[lane], triangles.s20[lane], triangles.s01[lane], 1, triangles.s12[lane],
           triangles.s20[lane], triangles.s12[lane], 1;
-      Eigen::Matrix<double, 3, 9> G = Eigen::Matrix<double, 3, 9>::Zero();  // q = G d
+      Eigen::Matrix<double, 3, 9> G = Eigen::Matrix<double, 3, 9>::Zero();  // q_k sqrt(S_kk) = (G d)_k
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) {
           const double e = triangles.e[static_cast<std::size_t>(k)][i][lane];

@@ -13,7 +13,7 @@ namespace pliant {
 
 class LinearMembrane final : public NodalEnergy {
  public:
-  /// Throws std::invalid_argument as Sheet::check.
+  /// Throws the errors of Sheet::check.
   LinearMembrane(const ShellMesh& mesh, const Sheet& sheet);
 
   Of of() const override { return Of::displacement; }
@@ -26,7 +26,7 @@ class LinearMembrane final : public NodalEnergy {
 
  private:
   using PerEdge = std::array<Pack, 3>;
-  /// Four triangles.
+  /// Constants of four triangles.
   struct Triangles {
     Edges<Pack> e;       ///< e_k sqrt(S_kk)
     Pack s01, s12, s20;  ///< S_kl / sqrt(S_kk S_ll)

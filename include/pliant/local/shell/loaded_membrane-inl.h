@@ -16,8 +16,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns the triangles of a parameter mesh. Throws std::invalid_argument for unknown nodes, and unless
-/// every corner has (u, v).
+/// Returns the triangles of a parameter mesh. Throws std::invalid_argument if a triangle refers to an unknown
+/// node, or if uv has not one column for each corner.
 inline const Eigen::Matrix3Xi& checked_parameter_triangles(const ParameterMesh& mesh) {
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k)

@@ -20,14 +20,14 @@ namespace pliant {
 struct Load {
   /// Integration of w0 |d|^2: exact, or with a third of each triangle at each corner.
   enum class Size { consistent, lumped };
-  double w0;  ///< of the size |d|^2: N/m on parameters, N/m^3 on the surface
-  double w1;  ///< of the variation |grad d|^2: N/m
+  double w0;  ///< weight of the size |d|^2: N/m on parameters, N/m^3 on the surface
+  double w1;  ///< weight of the variation |grad d|^2: N/m
   Size size = Size::consistent;
 };
 
 /// A triangle mesh of the parameter rectangle. A node at a pole has a different v in each triangle, so that
-/// (u, v) are stored for each corner. A cell at a pole has two triangles, and one of them contains the pole
-/// twice.
+/// (u, v) are stored for each corner. Each cell of the (u, v) grid has two triangles; in a cell at a pole,
+/// one of them contains the pole twice.
 struct ParameterMesh {
   Eigen::Index n_nodes;
   Eigen::Matrix3Xi triangles;
@@ -52,9 +52,9 @@ class LoadedMembrane final : public NodalEnergy {
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
-  /// Four triangles, K_ij of one direction.
+  /// Constants of four triangles: K_ij of one direction.
   struct Triangles {
-    std::array<Pack, 3> spring;  ///< -K_ij of w1 between the ends of edge k: w1 cot(angle k)/2
+    std::array<Pack, 3> spring;  ///< -K_ij of w1 between the ends of edge k: w1 cot(angle at corner k)/2
     Pack diagonal, uniform;      ///< K_ij of w0: uniform + diagonal delta_ij
   };
   using Corners = ElementBatches<3>::Corners;

@@ -16,7 +16,7 @@ Membrane<Law>::Membrane(const ShellMesh& mesh, const Sheet& sheet)
     Batch& triangles = triangles_[static_cast<std::size_t>(b)];
     for (int lane = 0; lane < Pack::kLanes; ++lane)
       triangles.law.set(lane, edges_of(mesh, batches_.element(b, lane)), sheet);
-    // Uses the operations of a later evaluation, so that q is exactly 0 at rest.
+    // The rest values come from the operations of a later evaluation, so that q is exactly 0 at rest.
     triangles.rest = {0.0, 0.0, 0.0};
     triangles.rest = triangles.strain(edges_of(batches_.corners(X, b)));
   }
@@ -68,8 +68,8 @@ void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b)), e_dot = edges_of(batches_.corners(x_dot, b));
-    // The tensions are the law at rest applied to the rates q_dot, with a constant positive semi-definite
-    // matrix.
+    // The tensions are those of the law linearised at rest, applied to the rates q_dot. Its matrix is
+    // constant and positive semi-definite.
     return corner_forces<Pack>(batch(b).law.linear_tension(strain_change(e, e_dot)), e);
   });
 }

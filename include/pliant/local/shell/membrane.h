@@ -1,5 +1,6 @@
-// Membranes for large deformation: constant-strain triangles, with the energy of the whole map from rest to
-// the current positions. Tensions tau_k = dW/dq_k act along the current edges e_k (edge_strain.h):
+// Membranes for large deformation: constant-strain triangles whose energy depends on the whole deformation
+// from rest to the current positions p = s + d. Tensions tau_k = dW/dq_k act along the current edges e_k
+// (edge_strain.h):
 //   q_k = (|e_k|^2 - |e_k|_rest^2)/2,   dq_k = e_k . de_k,
 //   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k.
 // Derivatives are exact.
@@ -17,7 +18,7 @@ namespace pliant {
 template <class Law>
 class Membrane final : public NodalEnergy {
  public:
-  /// Throws std::invalid_argument as Sheet::check.
+  /// Throws the errors of Sheet::check.
   Membrane(const ShellMesh& mesh, const Sheet& sheet);
 
   Of of() const override { return Of::position; }
@@ -32,7 +33,7 @@ class Membrane final : public NodalEnergy {
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
-  /// Four triangles.
+  /// Constants of four triangles.
   struct Batch {
     typename Law::Triangles law;
     std::array<Pack, 3> rest;  ///< |e_k|^2 / 2 at rest, m^2

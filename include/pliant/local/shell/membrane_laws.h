@@ -15,8 +15,8 @@
 namespace pliant {
 
 /// Members of a law: its name, and `Triangles`, the constants of four triangles with W and its derivatives.
-/// tension() returns tau = dW/dq, N/m; linear_tension() is its linearisation at rest; T is Pack or a dual
-/// number.
+/// set() computes the constants of one triangle with rest edges e. tension() returns tau = dW/dq, N/m;
+/// linear_tension() returns its linearisation at rest. T is Pack or a dual number.
 struct StVenantKirchhoffSheet {
   static constexpr const char* name = "st_venant_kirchhoff";
 

@@ -23,7 +23,7 @@ inline Vec3<Pack> twice_area_vector(const ElementBatches<3>::Corners& x) {
   return Vec3<Pack>(x[1] - x[0]).cross(Vec3<Pack>(x[2] - x[0]));
 }
 
-/// Batches that one task sums.
+/// Number of batches that one task of the thread pool sums.
 inline constexpr int kPressureRange = 512;
 
 }  // namespace detail
@@ -62,7 +62,7 @@ double Pressure::sum(double* parts, ThreadPool* pool, F&& f) const {
 }
 
 PLIANT_INLINE double Pressure::volume(const Coordinates& x, double* parts, ThreadPool* pool) const {
-  // Relative to a node of the shell, to avoid cancellation in a shell far from the origin.
+  // Positions are relative to node 0, to avoid cancellation in a shell far from the origin.
   const Eigen::Index n = batches_.n_nodes();
   const Vec3<Pack> origin(x[0], x[n], x[2 * n]);
   return sum(parts, pool,

@@ -47,7 +47,7 @@ class Pressure : public NodalEnergy {
   template <class F>
   double sum(double* parts, ThreadPool* pool, F&& f) const;
   double volume(const Coordinates& x, double* parts, ThreadPool* pool) const;
-  /// Calls visit(ElementMatrix) with the part of E' d2V/dx2 that belongs to each edge.
+  /// Calls visit(ElementMatrix) for each edge, with the terms of E' d2V/dx2 that couple its two ends.
   template <class Visit>
   void each_element(const Coordinates& x, Visit&& visit) const;
 
@@ -58,7 +58,8 @@ class Pressure : public NodalEnergy {
 
 class ConstantPressure final : public Pressure {
  public:
-  /// p: pressure inside minus outside, Pa; may be negative. Throws as Pressure, and if p is not finite.
+  /// p: pressure inside minus outside, Pa; may be negative. Throws the errors of Pressure, and
+  /// std::invalid_argument if p is not finite.
   ConstantPressure(const ShellMesh& mesh, double p);
 
  private:
@@ -69,15 +70,15 @@ class ConstantPressure final : public Pressure {
 /// Constants of a gas.
 struct Gas {
   double p0;         ///< pressure at V0, Pa
-  double V0;         ///< m^3
+  double V0;         ///< reference volume, m^3
   double gamma;      ///< ratio of the specific heats; 1: constant temperature
   double p_ext = 0;  ///< pressure outside, Pa
 };
 
 class GasPressure final : public Pressure {
  public:
-  /// Throws as Pressure, and unless p0 >= 0, V0 > 0, gamma >= 1 and p_ext is finite. Energy and forces are
-  /// NaN where V <= 0.
+  /// Throws the errors of Pressure, and std::invalid_argument unless p0 >= 0, V0 > 0, gamma >= 1 and p_ext is
+  /// finite. Energy and forces are NaN where V <= 0.
   GasPressure(const ShellMesh& mesh, const Gas& gas);
 
  private:

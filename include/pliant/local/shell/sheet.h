@@ -1,4 +1,5 @@
-// A thin isotropic elastic sheet in plane stress. E: Young's modulus (Pa), nu: Poisson's ratio, t: thickness.
+// A thin isotropic elastic sheet in plane stress. E: Young's modulus (Pa), nu: Poisson's ratio, t: thickness
+// (m).
 //   stretch   W(e) = t/2 [lambda (tr e)^2 + 2 mu e:e],   lambda = E nu/(1 - nu^2),   2 mu = E/(1 + nu)
 //   bending   W(k) = D/2 [nu (tr k)^2 + (1 - nu) k:k],   D = E t^3/(12 (1 - nu^2))
 // W: energy for each unit of rest area, J/m^2; e: in-plane strain; k: curvature, 1/m.

@@ -14,7 +14,8 @@
 namespace pliant {
 
 namespace detail {
-/// A triangle has no area if twice its area is at most this fraction of its longest edge squared: rounding.
+/// A triangle is refused if twice its area is at most this fraction of its longest edge squared: its area is
+/// then a rounding error.
 inline constexpr double kShellFlatTriangle = 1e-12;
 }  // namespace detail
 

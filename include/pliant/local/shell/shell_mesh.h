@@ -10,6 +10,7 @@ class ShellMesh {
  public:
   /// Throws std::invalid_argument if there is no triangle, if a triangle refers to an unknown node or has no
   /// area, or if a position is not finite. The message gives the number of the triangle or node.
+  /// X: one row for each node, m. triangles: three node numbers in each column.
   ShellMesh(Nodes X, Eigen::Matrix3Xi triangles);
 
   const Nodes& X() const { return X_; }

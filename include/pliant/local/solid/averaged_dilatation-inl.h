@@ -85,7 +85,7 @@ void AveragedLinearSolid<Element>::compute_pressures(const Coordinates& x, doubl
 template <class Element>
 void AveragedLinearSolid<Element>::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                              ThreadPool* pool) const {
-  // The buffer contains the sums of nodes, then the pressures of patches.
+  // The buffer contains the sums at nodes, then the pressures of patches.
   const std::size_t sums = corners_.buffer_size();
   buffer.numbers.resize(std::max(buffer.numbers.size(), sums + volume_.size()));
   shear_.add_force(x, f, buffer, pool);

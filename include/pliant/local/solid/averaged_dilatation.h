@@ -17,8 +17,8 @@ template <class Element>
 class AveragedLinearSolid final : public NodalEnergy {
  public:
   static constexpr int N = Element::n_nodes;
-  /// Arguments of SolidEnergy. Throws std::invalid_argument as SolidEnergy does, and for nu_P < 0: averages
-  /// would increase E there, and frequency_bound would not hold.
+  /// rest, elements: as in SolidEnergy. Throws the errors of SolidEnergy, and std::invalid_argument for nu_P
+  /// < 0: averages would increase E there, and frequency_bound would not hold.
   AveragedLinearSolid(const Nodes& rest, const Eigen::MatrixXi& elements, const Elasticity& material);
 
   Of of() const override { return Of::displacement; }
@@ -34,7 +34,7 @@ class AveragedLinearSolid final : public NodalEnergy {
 
  private:
   static constexpr bool kNodal = N == 4;
-  /// Returns int of div d over the elements of a pack, m^3.
+  /// Returns int of div d over each element of a pack, m^3.
   Pack volume_change(const Coordinates& x, int pack) const;
   /// Computes lambda theta_c of all patches, Pa, positive in expansion. sums: scratch storage of
   /// corners_.buffer_size(1) numbers.

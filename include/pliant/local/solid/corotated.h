@@ -16,7 +16,8 @@ template <class T>
 Mat3<T> nearest_rotation(const Mat3<T>& F) {
   using std::sqrt;
   constexpr int max_iterations = 60;
-  // Bound on the squared norm of a step. Convergence is quadratic, so that the error is below rounding then.
+  // Bound on the squared norm of a step. Convergence is quadratic, so that the error after such a step is
+  // below rounding.
   constexpr double tolerance = 1e-20;
   Mat3<T> R = F;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {

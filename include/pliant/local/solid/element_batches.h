@@ -1,8 +1,8 @@
-// Elements with K corners in batches of Pack lanes, one element in each lane. Each element writes the forces
-// at its corners to its own part of a buffer; then each node sums its corners in the order of the elements.
-// No two threads write one number, and the sums do not depend on the number of threads. The corner buffer is
-// [batch][corner][x, y, z][lane]. Free lanes of the last batch repeat the last element; they are written but
-// not read.
+// Elements with K corners, in batches of four: one element in each lane of a Pack. Each element writes the
+// forces at its corners to its own section of a buffer; then each node sums its corners in the order of the
+// elements. No two threads write the same number, and the sums do not depend on the number of threads. The
+// corner buffer is [batch][corner][x, y, z][lane]. Free lanes of the last batch repeat the last element; they
+// are written but not read.
 #pragma once
 
 #include <array>
@@ -95,8 +95,8 @@ class ElementBatches {
 
   int n_elements_, n_nodes_;
   std::vector<std::array<std::array<int, Pack::kLanes>, K>> nodes_;
-  // Corners of node i: buffer_index_[first_[i]] .. buffer_index_[first_[i + 1] - 1] are the buffer indices of
-  // their x.
+  // The corners at node i have their x components at the buffer indices buffer_index_[first_[i]] ..
+  // buffer_index_[first_[i + 1] - 1].
   std::vector<int> first_, buffer_index_;
 };
 

@@ -29,7 +29,7 @@ class ElementCorners {
   int n_packs() const { return static_cast<int>(nodes_.size()) / (N * Pack::kLanes); }
   /// Length of the buffer of sum<R>.
   std::size_t buffer_size(int R = 3) const { return block_nodes_ * static_cast<std::size_t>(R); }
-  /// Packs in a block, and nodes that one task sums.
+  /// Number of packs in a block; number of nodes that one task of the thread pool sums.
   static constexpr int kPacks = 128, kNodes = 512;
 
   int node(int element, int corner) const {

@@ -12,8 +12,8 @@
 namespace pliant {
 
 /// Returns the bound, 1/s^2; infinity if a mass is not positive. M: diagonal of the mass matrix in the order
-/// of nodes.h, kg. stiffness(e): K_e, whose row 3 a + i is direction i of corner a. volume(e): weight by
-/// which the mass of a node is split among its elements.
+/// of nodes.h, kg. stiffness(e): K_e, whose row 3 a + i is direction i of corner a. volume(e): volume of the
+/// element, the weight by which the mass of a node is split among its elements.
 template <int N, class Stiffness, class Volume>
 double element_frequency_bound(const ElementCorners<N>& corners, const VecX<double>& M, Stiffness&& stiffness,
                                Volume&& volume) {

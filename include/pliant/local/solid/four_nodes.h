@@ -1,5 +1,5 @@
-// Reads and writes nodal values four nodes at a time as Packs. The values are columns of numbers, one number
-// for each node.
+// Reading and writing of nodal values, four nodes at a time, as Packs. The values are columns of numbers, one
+// number for each node.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// Four neighbouring nodes, or fewer at the end. full: all four exist; the compiler then keeps sums over
-/// nodes in registers.
+/// Four consecutive nodes, or fewer at the end. full: all four exist; the compiler then keeps sums over nodes
+/// in registers.
 template <bool full = false>
 class FourNodes {
  public:
@@ -54,7 +54,8 @@ class FourNodes {
   int count_;
 };
 
-/// Calls act(four) for all n nodes; four is a FourNodes<true>, at the end possibly a FourNodes<>.
+/// Calls act(four) for all n nodes. `four` is a FourNodes<true>; the last one is a FourNodes<> if n is not a
+/// multiple of four.
 template <class F>
 void for_each_four(Eigen::Index n, F&& act) {
   Eigen::Index first = 0;

@@ -1,9 +1,9 @@
 // Green's strain, Hooke's law of an isotropic material and Kelvin-Voigt damping, from F = dx/dX:
 //   G = (F^T F - I)/2,   Gdot = (F^T Fdot + Fdot^T F)/2,   S(G) = lambda tr(G) I + 2 mu G
 //   P_v = F S(Gdot)   viscous stress for beta = 1 s
-// P_v damps every isotropic law as its own stiffness at rest would. Rigid motion has Gdot = 0. The dissipated
-// power P_v : Fdot = S(Gdot) : Gdot is never negative.
-// Dim = 2: F maps a surface and has two non-zero columns; I has two ones.
+// For every isotropic law, P_v at rest is the damping by the law's own stiffness. Rigid motion has Gdot = 0.
+// The dissipated power P_v : Fdot = S(Gdot) : Gdot is never negative.
+// Dim = 2: F is the gradient on a surface and has two non-zero columns; I has two ones on its diagonal.
 #pragma once
 
 #include <pliant/local/tensor.h>

@@ -3,7 +3,7 @@
 //   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
 //   P = mu F + ((lambda + mu)(J - 1) - mu) C.
 // For small strains the constants are those of Hooke's law. W is a polynomial, so that it is defined for
-// inverted elements and drives them back.
+// inverted elements, and its force turns them back.
 #pragma once
 
 #include <pliant/local/elasticity.h>

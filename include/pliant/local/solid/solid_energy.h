@@ -1,10 +1,10 @@
 // Elastic energy of a solid made of tetrahedra: E = sum over elements and quadrature points of weight * W(G).
 // For nodal vectors x the gradient is
 //   G = sum_a x_a (dN_a/dX)^T = (dx/dxi) (dX/dxi)^-1,
-// of x = d for the linear law and of x = p = s + d for the other laws. The force on node a is
-//   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG,
-// and K dx has the form of -f with dP, the change of P along the gradient of dx, in place of P. One kernel
-// serves every element (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each point.
+// where x = d for the linear law and x = p = s + d for the other laws. The force on node a is
+//   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG.
+// K dx is -f with P replaced by dP, the change of P along the gradient of dx. One kernel serves every element
+// (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each quadrature point.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class SolidEnergy final : public NodalEnergy {
   static constexpr int N = Element::n_nodes;
 
   /// rest: positions X of the nodes at rest, m. elements: N node numbers in each column. Throws
-  /// std::invalid_argument for another number of rows, for unknown nodes, and if det dX/dxi <= 0 at a point
-  /// of the rule.
+  /// std::invalid_argument for another number of rows, for unknown nodes, and if det dX/dxi <= 0 at a
+  /// quadrature point.
   SolidEnergy(const Nodes& rest, const Eigen::MatrixXi& elements, const Law& law);
 
   Of of() const override { return Law::of; }
@@ -46,26 +46,26 @@ class SolidEnergy final : public NodalEnergy {
   int n_elements() const { return corners_.n_elements(); }
   /// Returns K of one element at x; row 3 a + i is direction i of corner a.
   Eigen::Matrix<double, 3 * N, 3 * N> element_stiffness(const Coordinates& x, int element) const;
-  /// Returns the volume of an element by its rule, m^3.
+  /// Returns the volume of an element by its quadrature rule, m^3.
   double volume(int element) const;
 
  private:
   static constexpr int kPoints = static_cast<int>(Element::rule.size());
-  /// One point of the rule in four elements.
+  /// One quadrature point in four elements.
   struct Point {
     Mat3<Pack> inverse;  ///< (dX/dxi)^-1, 1/m
-    Pack weight;         ///< weight of the rule times det dX/dxi, m^3; 0 in lanes without an element
+    Pack weight;  ///< weight of the quadrature rule times det dX/dxi, m^3; 0 in lanes without an element
   };
   /// dP/dG and dG/dx_a; see the functions below.
   using StressDerivative = Eigen::Matrix<double, 9, 9>;
   using GradientMatrix = Eigen::Matrix<double, 9, 3 * N>;
   /// Subtracts from f the nodal forces of the stress P = stress(G) of all elements. G: gradients of the given
-  /// nodal fields at a point, G[k] of fields[k].
+  /// nodal fields at a quadrature point, G[k] of fields[k].
   template <int Fields, class Stress>
   void subtract_forces(const std::array<const double*, Fields>& fields, VecX<double>& f, Buffer& buffer,
                        ThreadPool* pool, Stress&& stress) const;
-  /// Returns dG/dx_a at a point of an element. Row 3 r + c is G_rc, column 3 a + i is direction i of corner
-  /// a.
+  /// Returns dG/dx_a at a quadrature point of an element. Row 3 r + c is G_rc, column 3 a + i is direction i
+  /// of corner a.
   static GradientMatrix gradient_matrix(const TetrahedronPoint& at, const Mat3<double>& inverse);
   /// Returns dP/dG of the law at G, components in the order of gradient_matrix.
   StressDerivative stress_derivative(const Mat3<double>& G) const;
@@ -73,7 +73,7 @@ class SolidEnergy final : public NodalEnergy {
 
   Law law_;
   ElementCorners<N> corners_;
-  std::vector<Point> points_;  // [pack][point of the rule]
+  std::vector<Point> points_;  // [pack][quadrature point]
 };
 
 /// The linear solid: K does not depend on x.

@@ -30,7 +30,7 @@ void for_element_masses(const Nodes& rest, const Eigen::MatrixXi& elements, doub
   }
 }
 
-/// Calls add(element, M_e) for every element; the number of rows gives the type.
+/// Calls add(element, M_e) for every element; the number of rows of `elements` gives the type of element.
 template <class Add>
 void for_each_element_mass(const Nodes& rest, const Eigen::MatrixXi& elements, double density, Add&& add) {
   if (elements.rows() == LinearTetrahedron::n_nodes)

@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-/// A point of a quadrature rule: barycentric coordinates and weight.
+/// A quadrature point: barycentric coordinates and weight.
 struct TetrahedronPoint {
   std::array<double, 4> L;
   double weight;
@@ -24,8 +24,8 @@ struct TetrahedronPoint {
 
 namespace detail {
 
-/// Stores the four points whose coordinates are 1 - 3 a once and a three times, from points[n] on. share:
-/// weight of each point divided by the volume of the tetrahedron.
+/// Stores the four quadrature points with one coordinate 1 - 3 a and three coordinates a in points[n] ..
+/// points[n + 3], and adds 4 to n. share: weight of each point divided by the volume of the tetrahedron.
 template <std::size_t N>
 constexpr void add_corner_orbit(std::array<TetrahedronPoint, N>& points, std::size_t& n, double a,
                                 double share) {
@@ -109,7 +109,8 @@ struct QuadraticTetrahedron {
     return n;
   }
 
-  /// From dx/dL_c, with dN_c/dL_c = 4 L_c - 1 and dN/dL_c = 4 L_d for the node between corners c and d.
+  /// Computes dx/dxi from dx/dL_c, with dN_c/dL_c = 4 L_c - 1 and dN/dL_c = 4 L_d for the node between
+  /// corners c and d.
   template <class T>
   static Mat3<T> gradient(const TetrahedronPoint& at, const Vec3<T>* x) {
     Mat3<T> D;
@@ -197,8 +198,9 @@ struct EnrichedTetrahedron {
     }
   }
 
-  /// Computes the coefficients of the bubbles for component r of nodal vectors x: on each face and in the
-  /// middle, the nodal value less the value of the other shape functions there.
+  /// Computes the coefficients of the bubbles for component r of nodal vectors x: a coefficient is the value
+  /// at the bubble's node minus the value there of the quadratic functions and, in the middle, of the face
+  /// bubbles.
   template <class T>
   static void bubbles(const Vec3<T>* x, int r, T* face, T& middle) {
     T corners = x[0][r] + x[1][r] + x[2][r] + x[3][r], edges(0.0), faces(0.0);

@@ -25,7 +25,7 @@ struct Dual {
   Dual(const C& value) : v(value), d{} {}  // NOLINT(google-explicit-constructor): constants convert silently
 
   /// Converts from a dual over a narrower scalar C (double to Pack) with N partials. If Dual<N, C> converts
-  /// to T itself, it is a constant (constructor above).
+  /// to T itself, the constructor above treats it as a constant.
   template <class C, std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, T> &&
                                           !std::is_convertible_v<Dual<N, C>, T>,
                                       int> = 0>

@@ -70,7 +70,7 @@ inline T polynomial(const double (&c)[N], const T& x) {
 template <class T>
 inline T exp(const T& x) {
   constexpr double log2_e = 0x1.71547652b82fep+0, ln2_high = 0x1.62e42fefp-1, ln2_low = 0x1.473de6af278edp-34;
-  // (e^r - 1 - r) / r^2
+  // coefficients of (e^r - 1 - r) / r^2
   constexpr double series[] = {1. / 2,       1. / 6,        1. / 24,        1. / 120,
                                1. / 720,     1. / 5040,     1. / 40320,     1. / 362880,
                                1. / 3628800, 1. / 39916800, 1. / 479001600, 1. / 6227020800};
@@ -80,7 +80,7 @@ inline T exp(const T& x) {
   const T n = nearest_integer(T(clamped * log2_e));
   const T r = (clamped - n * ln2_high) - n * ln2_low;
   const T e = r * r * polynomial(series, r) + r + 1.0;
-  const T half = nearest_integer(T(n * 0.5));  // two factors, so that subnormal results are exact too
+  const T half = nearest_integer(T(n * 0.5));  // 2^n as two factors keeps subnormal results accurate
   return e * power_of_two(half) * power_of_two(T(n - half));
 }
 
@@ -92,7 +92,7 @@ template <class T>
 inline void sin_cos(const T& x, T& sine, T& cosine) {
   constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
   constexpr double high = 0x1.921fb544p+0, middle = 0x1.0b4611a6p-34, low = 0x1.3198a2e037073p-69;  // pi/2
-  // (sin r - r) / r^3 and (cos r - 1 + r^2/2) / r^4, in r^2
+  // coefficients of (sin r - r) / r^3 and (cos r - 1 + r^2/2) / r^4, as series in r^2
   constexpr double sine_series[] = {
       -1. / 6,        1. / 120,        -1. / 5040,          1. / 362880,
       -1. / 39916800, 1. / 6227020800, -1. / 1307674368000, 1. / 355687428096000};
@@ -100,7 +100,7 @@ inline void sin_cos(const T& x, T& sine, T& cosine) {
       1. / 24,        -1. / 720,         1. / 40320,           -1. / 3628800,
       1. / 479001600, -1. / 87178291200, 1. / 20922789888000., -1. / 6402373705728000.};
   const T n = nearest_integer(T(x * two_over_pi));
-  // r + rest = x - n pi/2. The products with high and middle and the first difference are exact.
+  // r + rest = x - n pi/2. The products with `high` and `middle` and the first difference are exact.
   const T near = x - n * high, step = n * middle;
   const T reduced = near - step, moved = reduced - near;
   const T rounding = (near - (reduced - moved)) - (step + moved);

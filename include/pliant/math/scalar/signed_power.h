@@ -1,6 +1,6 @@
-// Signed powers of a sine or cosine, C^eps = sgn(x) |x|^eps, which the maps of the superquadrics consist of
-// (include/pliant/shape/README.md). Each value x is stored with log |x|. A power then costs one exponential,
-// and 0^eps log 0 is 0 and never NaN.
+// Signed powers sgn(x) |x|^eps of a sine or cosine x. The formulas of the superquadrics consist of them
+// (include/pliant/shape/README.md). Each x is stored with log |x|, so that a power costs one exponential, and
+// 0^eps log 0 is 0 and never NaN.
 #pragma once
 
 #include <limits>
@@ -23,12 +23,12 @@ struct Trig {
 /// exponents.
 inline constexpr double kLogZero = -1e6;
 
-/// Returns the value sign * exp(log_abs).
+/// Returns the Trig whose value is sign * exp(log_abs).
 inline Trig<double> trig_from_log(double log_abs, double sign) {
   return {sign * math::exp(log_abs), sign, log_abs};
 }
 
-/// Returns x with its sign and logarithm.
+/// Returns x with its sign and log |x|.
 inline Trig<double> trig(double x) {
   const double sign = x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0);
   return {x, sign, sign != 0 ? std::log(std::abs(x)) : kLogZero};
@@ -63,7 +63,8 @@ Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
   return r;
 }
 
-/// Returns the power and its material derivatives for a Pack of points (or any T); x = 0 is not allowed.
+/// Returns the power and its derivatives along material directions for any T, for example a Pack of material
+/// points. x = 0 is not allowed.
 template <int N, class T>
 Dual<N, T> signed_power(const Trig<Dual<N, T>>& c, const Dual<N, T>& eps) {
   return math::exp(Dual<N, T>(eps * c.log_abs)) * c.sign.v;

@@ -16,7 +16,8 @@ struct Derivatives {
 /// Returns sin(x) / x and its derivatives, from x and its sine and cosine.
 template <class T>
 Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& sin_cos_x) {
-  // c_k = (-1)^k / (2k+1)!; value S(y) at y = x^2, first 2 x S', second 2 S' + 4 y S''
+  // S(y) = sum of c_k y^k with c_k = (-1)^k / (2k+1)! and y = x^2. Value: S; first derivative: 2 x S';
+  // second: 2 S' + 4 y S''.
   constexpr double c[] = {1.,
                           -1. / 6,
                           1. / 120,
