@@ -152,7 +152,7 @@ TEST_CASE("columns count characters, also inside strings with escapes") {
   CHECK(column(0) == 19);  // a
   CHECK(column(1) == 20);  // \n
   CHECK(column(2) == 22);  // \u00e9
-  CHECK(column(3) == 22);  // its second byte
+  CHECK(column(3) == 22);  // the second byte of \u00e9
   CHECK(column(4) == 28);  // the surrogate pair
   CHECK(column(8) == 40);  // b
   CHECK(column(9) == 41);  // the closing quote

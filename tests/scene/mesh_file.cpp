@@ -56,7 +56,7 @@ TEST_CASE("meshes are read from every supported format") {
                "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
                "endfacet\nendsolid a\n")
           .empty());
-  // A glTF node with two triangles, translated by 2 and scaled by 2.
+  // A glTF node with one triangle, scaled by 2 and then translated by 2 along z.
   const NewFolder folder;
   set_bytes(folder / "a.gltf",
             R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],

@@ -33,7 +33,7 @@ constexpr double kLevelAlongRidge = 3e-6;
 /// Step for the one-sided slopes at a point of a ridge, in sizes.
 constexpr double kSideStep = 1e-7;
 /// Where a part is level along a ridge, its two contacts are this far inside the ends of the level range, in
-/// sizes, because the height changes at the ends.
+/// sizes, where the height is still that of the range.
 constexpr double kInset = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
