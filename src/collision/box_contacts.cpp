@@ -11,8 +11,8 @@ namespace pliant {
 
 namespace {
 
-/// A face normal is preferred to a later axis whose gap is larger by at most this, in sizes of the smaller
-/// box.
+/// A face normal is preferred to an axis tested later whose gap is larger by at most this, in sizes (largest
+/// half size) of the smaller box.
 constexpr double kFaceFirst = 1e-6;
 /// Two edges are parallel, and have no crossing, if the sine of the angle between them is below this.
 constexpr double kParallelEdges = 1e-6;
@@ -23,8 +23,8 @@ constexpr double kSameCorner = 1e-6;
 struct Axis {
   Vec3<double> n = Vec3<double>::Zero();  ///< from a to b
   double gap = -std::numeric_limits<double>::infinity();
-  /// Number of the box axis that n is the face normal of, on a or on b. If both are set, n is the cross
-  /// product of an edge of a and an edge of b.
+  /// Axis number of the box whose face normal n is: of_a for box a, of_b for box b; -1 for the other box. If
+  /// both are set, n is the cross product of these two axes.
   int of_a = -1, of_b = -1;
 };
 
@@ -51,8 +51,8 @@ Axis widest_gap(const PlacedBox& a, const PlacedBox& b, double size) {
   return best;
 }
 
-/// Returns the corner that is farthest in a direction, world. along: an axis of the box for which the middle
-/// of the edge is returned instead.
+/// Returns the corner of a box that is farthest in the direction n, m, world. along: if given, an axis of the
+/// box; the middle of the farthest edge along this axis is returned instead.
 Vec3<double> farthest_corner(const PlacedBox& box, const Vec3<double>& n, int along = -1) {
   Vec3<double> p = box.R.transpose() * n;
   for (int k = 0; k < 3; ++k) p[k] = k == along ? 0 : std::copysign(box.half[k], p[k]);
@@ -65,8 +65,8 @@ Vec3<double> nearest_in_box(const PlacedBox& box, const Vec3<double>& x) {
   return box.c + box.R * in_box.cwiseMin(box.half).cwiseMax(-box.half);
 }
 
-/// Returns the point of the edge of a that is nearest to the opposite edge of b. The edges are those whose
-/// cross product is the axis.
+/// Returns the point of an edge of a that is nearest to an edge of b. The two edges are those whose cross
+/// product is the axis and that face each other.
 Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
   const Vec3<double> p = farthest_corner(a, axis.n, axis.of_a), q = farthest_corner(b, -axis.n, axis.of_b);
   const Vec3<double> e = a.R.col(axis.of_a), f = b.R.col(axis.of_b), d = q - p;
@@ -75,7 +75,7 @@ Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) 
 }
 
 /// A face of a box that is clipped by four planes. In exact arithmetic it has at most eight corners. With
-/// rounding, each plane adds at most half as many corners again, so 20 places suffice.
+/// rounding, each plane adds at most half as many corners again (4, 6, 9, 13, 19), so 20 entries suffice.
 struct Polygon {
   std::array<Vec3<double>, 20> corners;
   std::size_t n = 0;
@@ -95,8 +95,8 @@ void clip(Polygon& polygon, const Vec3<double>& n, double bound) {
   polygon = kept;
 }
 
-/// Returns the face of a box whose normal is most opposite to n, clipped to the part over face `number` of
-/// the other box, which has the normal n.
+/// Returns the face of a box whose normal is most opposite to n, clipped to the region over a face of the
+/// other box. That face has the normal n, along axis `number` of the other box.
 Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const Vec3<double>& n) {
   const Vec3<double> in_box = box.R.transpose() * n;
   int k = 0;

@@ -15,11 +15,13 @@ namespace {
 
 /// Edges of the sample mesh along an eighth of a great circle.
 constexpr int kSurfaceResolution = 6;
-/// Edges of the coarse mesh from which the reach of a part with dynamic parameters is estimated. The reach is
-/// the largest distance of its points from the origin, times the factor.
+/// The reach of a part with dynamic parameters is estimated from a coarse mesh with kCoarseEdges edges along
+/// an eighth of a great circle. It is the largest distance of a mesh point from the origin, times
+/// kCoarseMargin.
 constexpr int kCoarseEdges = 2;
 constexpr double kCoarseMargin = 1.1;
-/// Largest distance of the surface from the chords between its sample points, in sizes of the part.
+/// Largest distance of the surface from the chords between its sample points, in sizes of the part
+/// (Part::size(), its largest half extent).
 constexpr double kSurfaceSag = 0.02;
 /// Largest distance between the lowest sample point and the lowest surface point, in sizes, for two thin
 /// parts that cross.
@@ -29,23 +31,26 @@ constexpr double kSameHeight = 1e-6;
 /// Points nearer than kSamePlace, in sizes, are merged. Two points are on one flat face if the middle of
 /// their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
-/// The test whether a sample point is already the lowest point: size of its stencil, in spacings; and the
-/// largest difference of heights, in sizes, that is rounding and therefore starts no search on a flat face.
+/// The test whether a sample point is already the lowest point uses a stencil of kCorner spacings.
+/// Differences of heights up to kHeightRounding, in sizes, are rounding, so that they start no search on a
+/// flat face.
 constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
-/// A stencil whose second difference is smaller than this, in sizes, is flat.
+/// A stencil whose second difference of heights is smaller than this, in sizes, is flat.
 constexpr double kFlatStencil = 1e-13;
 /// The search ends at this size of its stencil, in spacings.
 constexpr double kMinStencil = 1e-8;
-/// Directions whose angle to a pole has a smaller sine are not described by latitude and longitude.
+/// Directions nearer to a pole, where the sine of the angle to the z axis is below this, are not described by
+/// latitude and longitude.
 constexpr double kNearPole = 0.2;
 constexpr int kMaxStencilHalvings = 60;
 
-/// Nine places: three rows of three along the first axis.
+/// Nine places around a centre; the first coordinate of Chart changes fastest. A place is the argument of
+/// ShapeFace::mesh_label(): a direction, or the pair of angles of a torus.
 using Stencil = std::array<Vec3<double>, 9>;
 
-/// Two coordinates for the places of a mesh pattern around one of them. For a ball they are latitude and
-/// longitude, because rims and edges are along these; near its poles they are along any two axes. For a torus
-/// they are u and v. Neighbouring mesh points are one spacing apart.
+/// Two coordinates for the places around a sample point. On a ball pattern they are latitude and longitude,
+/// because rims and edges follow these; near its poles they are offsets along any two tangents. On a torus
+/// they are u and v. Neighbouring sample points are one spacing apart.
 class Chart {
  public:
   Chart(const Vec3<double>& start, bool ball) : start_(start) {
@@ -100,9 +105,9 @@ class Chart {
   double latitude_ = 0, longitude_ = 0, widening_ = 1;
 };
 
-/// Returns the minima of quadratics through the heights h of a stencil, in stencil radii: one along each
-/// axis, which suits rims and lines on which a surface is level, and one in both coordinates. Quadratics
-/// whose second difference is below `flat` (m) are skipped.
+/// Returns the steps from the centre of a stencil to the minima of quadratics through its heights h (m), in
+/// stencil radii, at most 1. One quadratic for each axis suits rims and level lines of a surface; one depends
+/// on both coordinates. Quadratics whose second difference is below `flat` (m) are skipped.
 std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
   std::vector<Eigen::Vector2d> steps;
   auto add = [&](const Eigen::Vector2d& step) {
@@ -124,8 +129,9 @@ std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double fla
   return steps;
 }
 
-/// Returns the outermost of some points (columns of p): the point farthest from the first one, the point
-/// farthest from that, and the points farthest from the line through these two on either side.
+/// Returns the outermost of some points: the point farthest from the first one, the point farthest from that,
+/// and the points farthest from the line through these two, on either side. some: column numbers of p. Points
+/// nearer than `same` (m) to each other are one.
 std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
                                     double same) {
   std::vector<Eigen::Index> chosen;
@@ -204,12 +210,12 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
   return kCoarseMargin * part_->s(samples().coarse, values).colwise().norm().maxCoeff();
 }
 
-// Above 60 lines: every stage of the pattern search works on the stencil, the best point and the radius,
-// which small functions would have to pass to each other.
+// Longer than 60 lines, because every stage of the pattern search works on the stencil, the best point and
+// the radius. Small functions would have to pass these to each other.
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
-  // A stencil of three by three places is around the best point. Quadratics through its heights propose the
-  // next one.
+  // A stencil of three by three places surrounds the best point. Quadratics through its heights propose the
+  // next point.
   const Chart chart(samples().surface.places()[static_cast<std::size_t>(i)],
                     part_->shape().mesh() == MeshPattern::ball);
   auto material = [&](const Vec3<double>& place) {
@@ -309,8 +315,8 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
   for (const double band : {kSameHeight * size, kSurfaceSag * size})
     for (const Eigen::Index i : outermost(p, within(band), kSamePlace * size))
       if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
-  // On a flat face the search would move to one side of the face. The part is supported at the corners of the
-  // face, so that a corner that is low enough stays where it is.
+  // On a flat face the search would move from a corner to one side of the face. But the part is supported at
+  // the corners of the face, so that a sample point that is low enough replaces the result of its search.
   auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
     return (a - b).norm() >= kSamePlace * size &&
            thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlatChord * size;

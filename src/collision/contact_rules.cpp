@@ -113,8 +113,8 @@ ContactRule ContactRules::on_fixed(int part, int thing) const {
 }
 
 /// Returns the pair of the settings that applies to two things; nullptr if there is none. A pair that names
-/// both has priority over one that names a group, and that over one that names two groups; later pairs have
-/// priority over earlier ones.
+/// both things has priority over a pair that names one of them and a group of the other. The latter has
+/// priority over a pair that names two groups. Among equals, the last pair of the settings has priority.
 const ContactPair* ContactRules::pair(int a, int b) const {
   if (last_pair_.empty()) return nullptr;
   const std::vector<int>&of_a = groups_of_[at(a)], &of_b = groups_of_[at(b)];
@@ -129,7 +129,8 @@ const ContactPair* ContactRules::pair(int a, int b) const {
   return last < 0 ? nullptr : &model_->body().contact.pairs[at(last)];
 }
 
-/// Returns the number of the last pair with exactly these names; -1 if there is none.
+/// Returns the index of the last pair of the settings with exactly these two names; -1 if there is none. a,
+/// b: numbers of parts, planes, obstacles or groups.
 int ContactRules::number_of(int a, int b) const {
   const auto found = last_pair_.find(in_order(a, b));
   return found == last_pair_.end() ? -1 : found->second;

@@ -1,6 +1,6 @@
-// Deep overlap: each of two bodies contains the centre of the other, which can happen at the start of a run.
-// The low points of one over the other are then on its far side. The contact normal is the direction n of
-// least depth among a few candidates,
+// Deep overlap: each of two parts contains the centre of the other, which can happen at the start of a run.
+// The lowest points of one part over the other are then on the far side of the other. The contact normal is
+// the direction n of least depth among a few candidates,
 //   depth(n) = h_a(-n) + h_b(n) - n . (c_a - c_b),
 // where h are the support functions of the surfaces about their centres.
 #include <limits>
@@ -13,14 +13,14 @@
 namespace pliant {
 
 namespace {
-/// The line between centres that are nearer than this, in sizes, is no candidate.
+/// The line between centres that are nearer than this, times the sum of the sizes, is no candidate.
 constexpr double kOneCentre = 1e-9;
-/// A centre outside the other surface by less than this, in w, counts as inside, because low points there are
-/// close to the centre.
+/// The centre of a part is treated as inside the other part if f = w - 1 of the other part is less than this
+/// there. The lowest points of such a part are close to its centre.
 constexpr double kNearCentre = 0.1;
 }  // namespace
 
-/// Returns the point of a part that is farthest in a direction of the world, body frame.
+/// Returns the point (body frame, m) of a part that is farthest in a direction (world).
 Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) const {
   const Placed& placed = scratch_->parts[at(i)];
   const Vec3<double> n = placed.R.transpose() * direction;
@@ -31,7 +31,7 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
   return p.col(best);
 }
 
-/// Appends the contact of two bodies in deep overlap; returns whether they are.
+/// Returns whether two parts overlap deeply; if so, appends their contact.
 bool ContactFinder::find_deep_overlap(int a, int b, const ContactRule& rule,
                                       std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];

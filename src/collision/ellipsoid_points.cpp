@@ -1,4 +1,5 @@
-// Nearest directions of ellipsoids: support direction, and Newton iteration for the secular equation.
+// Nearest points of ellipsoids: the support direction, and Newton's method for the equation 1 / |y(lambda)|
+// = 1.
 #include <pliant/collision/ellipsoid_points.h>
 
 #include <cmath>
@@ -25,12 +26,12 @@ Vec3<double> nearest_direction(const Mat3<double>& M, const Vec3<double>& r) {
   const Vec3<double> stiff = (modes.eigenvalues().array() - modes.eigenvalues()[0]).max(0);
   auto along = [&](double lambda) -> Vec3<double> { return g.array() / (stiff.array() + lambda); };
   // 1 / |y| is concave and increasing in lambda, so Newton's method on it converges from below.
-  const double upper = g.norm(), lower = std::abs(g[0]);  // lower <= lambda <= upper where |y| = 1
+  const double upper = g.norm(), lower = std::abs(g[0]);  // bounds of the lambda with |y| = 1
   const double tiny = std::numeric_limits<double>::epsilon() * (stiff[2] + upper);
   double lambda = std::max(lower, tiny);
   if (!(along(lambda).norm() > 1) && lower <= tiny) {
-    // The hard case of Moré and Sorensen: r has no component along the least eigenvector. That component of y
-    // follows from |y| = 1; both signs are minima.
+    // The hard case of Moré and Sorensen: M^T r has no component along the eigenvector of the least
+    // eigenvalue. This component of y follows from |y| = 1; both signs give minima.
     Vec3<double> y(0, 0, 0);
     for (int k = 1; k < 3; ++k)
       if (stiff[k] > tiny) y[k] = g[k] / stiff[k];

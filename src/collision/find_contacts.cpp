@@ -20,22 +20,25 @@ namespace pliant {
 
 namespace {
 
-/// Contacts of a pair that are nearer than this, in sizes of the smaller part, are merged.
+/// Contacts of a pair that are nearer than this, in sizes of the smaller part (Part::size(), its largest half
+/// extent), are merged.
 constexpr double kMergeDistance = 0.03;
-/// A contact point is at an edge of b if the cosine between the normal of b there and the normal at a share
-/// kInner of the way to the middle of the contact is below kEdgeCosine.
+/// Whether a contact point is at an edge of b follows from two normals of b. One is at the point; the other
+/// is at a share kInner of the way to the middle of the contact. At an edge their cosine is below
+/// kEdgeCosine.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 /// Points nearer to a surface than this, in sizes of the part, are on it.
 constexpr double kFlush = 1e-4;
 /// Largest gap over an obstacle that least_gap() returns, in sizes of the part.
 constexpr double kMaxReportedGap = 0.1;
-/// Accuracy of the distance to the nearer side of a thin body, in thicknesses.
+/// Accuracy of the distance to the nearer side of a thin part, in thicknesses of the part.
 constexpr double kBisectionTolerance = 1e-12;
 /// The boxes of the pair search are enlarged by this share of the size of a part.
 constexpr double kPairMargin = 0.05;
-/// They are computed again if they are larger than needed by this factor.
+/// The enlarged boxes also include half the largest gap of the search. They are computed again if this half
+/// exceeds kMaxExcess times the half now needed, plus the least margin.
 constexpr double kMaxExcess = 2;
-/// Contacts are merged only if their normals differ by less than this.
+/// Contacts are merged only if the difference of their normals has a norm below this.
 constexpr double kMergeNormal = 0.2;
 /// Points of the two sides whose gaps differ by less than this, in sizes of the smaller part, are equally
 /// deep.
@@ -43,8 +46,8 @@ constexpr double kEqualDepth = 1e-9;
 
 }  // namespace
 
-/// The inside-outside function f = w - 1 of a part b, at points of the frame of a. To first order the
-/// distance to the surface of b is f / |grad f|.
+/// The inside-outside function f = w - 1 of a part b, as a function of points in the body frame of a part a.
+/// To first order the distance to the surface of b is f / |grad f|.
 class ContactFinder::OverPart final : public CollisionSurface::Field {
  public:
   OverPart(const Placed& a, const Placed& b, const Part& part, const ParameterValues<double>& values,
@@ -69,7 +72,7 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
     }
     gradient = part_.inside_outside_gradient(in_b, values_);
     const double height = part_.inside_outside(in_b, values_) / gradient.norm();
-    // No point is deeper than half the thickness of a body. Beyond that, f / |grad f| is the distance to a
+    // No point is deeper than half the thickness of a part. Beyond that, f / |grad f| is the distance to a
     // far side, and the side across the thin axis is used instead.
     return height < -0.5 * thickness_ ? across(in_b, gradient) : height;
   }
@@ -83,8 +86,8 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   }
 
  private:
-  /// Returns the height (negative, m) of a point inside b under the side of b across the thin axis that is
-  /// nearer, by bisection, and the gradient on that side.
+  /// Returns the height (negative, m) of a point inside b under a side of b, by bisection, and the gradient
+  /// on that side. The thin axis of b passes through two sides; the nearer one is used.
   double across(const Vec3<double>& in_b, Vec3<double>& gradient) const {
     const Vec3<double> out = (in_b[thin_axis_] < 0 ? -1.0 : 1.0) * Vec3<double>::Unit(thin_axis_);
     double inside = 0, outside = thickness_;
@@ -198,8 +201,8 @@ void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double
   }
 }
 
-// Above 60 lines: the closed form of two ellipsoids and the general search share the field and the function
-// that adds a contact.
+// Appends the lowest points of a over b. Longer than 60 lines, because the closed form of two ellipsoids and
+// the general search share the field and the function that adds a contact.
 void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   const Placed &on = scratch_->parts[at(a)], &over = scratch_->parts[at(b)];
@@ -252,12 +255,13 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
   for (const CollisionSurface::LowPoint& low : lows) {
     double gap = field.height(field.into_b(low.p), gradient);
     if (lows.size() > 1) {
-      // At an edge of b the normal is that of the face of b under the middle of the contact.
+      // At an edge of b the contact gets the normal of the face of b under the middle of the contact.
       Vec3<double> inner;
       const Vec3<double> inwards = field.R() * (kInner * (middle - low.p));
       const double inner_gap = field.height(field.into_b(low.p) + inwards, inner);
       if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
-        // A point on a side of b, as for two stacked faces of equal size, gets the gap over that face.
+        // A point on the surface of b (two stacked faces of equal size) gets the gap over the face under the
+        // middle.
         const bool flush = std::abs(gap) < kFlush * part_b.size();
         gap = flush ? inner_gap - inner.normalized().dot(inwards) : std::max(gap, inner_gap);
         gradient = inner;
@@ -267,7 +271,7 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
   }
 }
 
-/// Returns a contact of two parts at a point of the world.
+/// Returns a contact of parts a and b at a point x (m, world).
 Contact ContactFinder::contact_at(const Vec3<double>& x, const Vec3<double>& normal, double gap, int a, int b,
                                   const ContactRule& rule) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -313,11 +317,11 @@ bool ContactFinder::find_ball_on_box(int a, int b, const ContactRule& rule, doub
   return true;
 }
 
-/// Whether a plane across the line of centres separates two bodies by more than max_gap.
+/// Whether two planes normal to the line of centres separate two parts by more than max_gap (m).
 bool ContactFinder::are_apart(int a, int b, double max_gap) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
   const Vec3<double> d = other.c - one.c;
-  auto extent = [&](const Placed& placed) {  // along d, times its length
+  auto extent = [&](const Placed& placed) {  // half extent of the part along d, times |d|, m^2
     return placed.axes ? placed.axes->cwiseProduct(placed.R.transpose() * d).norm() : placed.reach * d.norm();
   };
   return d.squaredNorm() - extent(one) - extent(other) > max_gap * d.norm();
@@ -342,7 +346,8 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   const double size_a = model_->parts()[at(a)].part->size(), size_b = model_->parts()[at(b)].part->size(),
                same = kMergeDistance * std::min(size_a, size_b),
                as_deep = kEqualDepth * std::min(size_a, size_b);
-  // Of two equally deep points the one on the smaller part is kept: the lever arm of a rolling part is exact.
+  // Of two equally deep points the one on the smaller part is kept, so that the lever arm of a rolling part
+  // is exact.
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
@@ -360,9 +365,9 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   found.insert(found.end(), ours.begin(), ours.end());
 }
 
-/// Finds the pairs of parts whose boxes are at most max_gap apart and of which at least one part is marked.
-/// The pairs of enlarged boxes are kept from call to call and are valid while all boxes are inside the
-/// enlarged ones.
+/// Finds the pairs of parts whose boxes are at most max_gap (m) apart and of which at least one part is
+/// marked. The pairs of enlarged boxes are kept from call to call. They are valid while each box is inside
+/// its enlarged box.
 void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* marked) const {
   Scratch& s = *scratch_;
   s.boxes.clear();

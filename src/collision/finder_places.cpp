@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Whether the shape never changes.
+/// Whether the shape of a part never changes.
 bool ContactFinder::has_fixed_shape(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
 }
@@ -43,8 +43,8 @@ const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {
   return points;
 }
 
-/// Returns a box that contains the sample points of a part, or an ellipsoid, in its own frame. For a fixed
-/// shape it contains the surface too.
+/// Returns a box in the body frame that contains the sample points of a part. For an ellipsoid and for a
+/// fixed shape the box contains the whole surface.
 Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   if (placed.axes) return {-*placed.axes, *placed.axes};
@@ -53,7 +53,8 @@ Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
   return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
 }
 
-/// Returns a box that contains a part in the world; for a part with dynamic parameters the box of its ball.
+/// Returns a box in the world that contains a part. For a part with dynamic parameters that is no ellipsoid,
+/// it is the box of the ball of radius `reach`.
 Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);

@@ -12,32 +12,34 @@
 
 namespace pliant {
 
-/// Largest distance of the surface from the box of its sample points, in sizes of the part.
+/// Largest distance of the surface from the box of its sample points, in sizes of the part (Part::size(), its
+/// largest half extent).
 inline constexpr double kBulge = 0.05;
 
 /// A part and its pose.
 struct ContactFinder::Placed {
   Vec3<double> c;
   Mat3<double> R;
-  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
-  double reach;                      ///< radius of a ball about c that contains the part, m
-  std::optional<Vec3<double>> axes;  ///< semi-axes of an ellipsoid, m
-  std::optional<Vec3<double>> half;  ///< half sizes of a box, m
-  bool points_current = false;       ///< whether Scratch::points belong to the parameters in use
+  Vec3<double> c_dot = Vec3<double>::Zero(),
+               omega = Vec3<double>::Zero();  ///< velocities of the prescribed motion, m/s and rad/s, world
+  double reach;                               ///< radius of a ball about c that contains the part, m
+  std::optional<Vec3<double>> axes;           ///< semi-axes of an ellipsoid, m
+  std::optional<Vec3<double>> half;           ///< half sizes of a box, m
+  bool points_current = false;                ///< whether Scratch::points belong to the parameters in use
 
-  /// Velocity of a point by the prescribed motion, m/s, world.
+  /// Velocity of a point (world) by the prescribed motion, m/s, world.
   Vec3<double> frame_velocity(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
 struct ContactFinder::Scratch {
-  std::vector<ParameterValues<double>> values;  ///< of each part
+  std::vector<ParameterValues<double>> values;  ///< parameters of each part
   std::vector<Placed> parts;
   std::vector<Eigen::Matrix3Xd> points;  ///< sample points of parts with dynamic parameters, body frame
   struct PlaneNow {
     bool acts;
     Vec3<double> point, carried;
   };
-  std::vector<PlaneNow> planes;
+  std::vector<PlaneNow> planes;  ///< planes at the time of the search; carried: velocity, m/s, world
   MeshSearch mesh_search;
   /// A ball that contains a part during a step.
   struct Ball {
@@ -53,8 +55,9 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::AlignedBox3d> boxes;
   BoxTree tree;
   std::vector<std::pair<int, int>> pairs;
-  /// Enlarged boxes of the smooth parts, and their pairs, which are valid while all parts stay inside. The
-  /// boxes are larger by wide_reach (for the gap searched) and by at least wide_margin, m.
+  /// Enlarged boxes of the smooth parts, and the pairs of boxes that meet. The pairs are valid while each
+  /// part stays inside its box. The boxes are enlarged by wide_reach, half the largest gap of the search, and
+  /// by a margin of at least wide_margin, m.
   std::vector<Eigen::AlignedBox3d> wide;
   std::vector<std::pair<int, int>> wide_pairs;
   double wide_reach = 0, wide_margin = 0;

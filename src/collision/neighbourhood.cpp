@@ -1,5 +1,5 @@
-// The neighbourhood of a step. Each part is enclosed in a ball that includes its motion in the step; balls
-// that meet may touch, and their motion limits the step.
+// The neighbourhood of a step. Each part is enclosed in a ball that includes its motion in the step. Parts
+// whose balls meet may touch, and their relative motion limits the step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,18 +13,19 @@ namespace pliant {
 
 namespace {
 
-/// Largest rotation of a part over a plane in a step, rad.
+/// Largest rotation of a part over a plane in a step, rad: its points may move by this times its reach.
 constexpr double kMaxTurnOverPlane = 0.5;
 /// A step that is done is kept if a motion exceeds its limit by at most this factor.
 constexpr double kToleratedTravel = 1.125;
 
-/// Bound of the speed of a point of a part relative to its frame, by the rates of its parameters, m/s. reach:
-/// radius of the part, m.
+/// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,
+/// m/s. It treats each rate as that of a length. reach: radius of a ball about the origin that contains the
+/// part, m.
 double shape_speed(const PartModel& m, const State& state, double reach) {
   return reach * state.v.segment(m.v0 + 6, m.n_s).lpNorm<1>() / m.part->size();
 }
 
-/// Bound of the speed of a point of a part relative to the origin of its frame, m/s.
+/// Estimates the largest speed of a point of a part relative to the origin of its frame, m/s.
 double speed_about_origin(const PartModel& m, const State& state, double reach) {
   return reach * state.v.segment<3>(m.v0 + 3).norm() + shape_speed(m, state, reach);
 }
@@ -45,7 +46,7 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   const PartModel& m = model_->parts()[at(i)];
   place(state, t, i);
   Scratch::Ball& ball = scratch_->balls[at(i)];
-  // The radius is that of the current shape, which may be larger than the rest shape.
+  // The radius is the reach of the current shape, which may be larger than the rest shape.
   ball = {scratch_->parts[at(i)].c,    Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
           scratch_->parts[at(i)].reach};
   if (m.motion != nullptr) {
@@ -69,9 +70,9 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   ball.reach += h * (ball.fastest() + spare);
 }
 
-/// Returns a bound of the speed of a part seen from the rotating frame of another one, m/s, and of its
-/// increase by the rotation of that frame, m/s^2, both at the current velocities. For a part that rests on a
-/// turning body they are small. Neither motion may be prescribed.
+/// Returns two bounds at the current velocities: the speed of a part seen from the rotating frame of another
+/// part, m/s, and the increase of this speed by the rotation of that frame, m/s^2. They are small for a part
+/// that rests on a turning part. Neither motion may be prescribed.
 std::pair<double, double> ContactFinder::relative_speed(const State& state, int part, int from) const {
   struct Motion {
     Vec3<double> c_dot, omega;
@@ -92,7 +93,8 @@ std::pair<double, double> ContactFinder::relative_speed(const State& state, int 
           b.omega.cross(against).norm()};
 }
 
-/// Lower bound of the distance between the ball of a part and another part, by the box of that part, m.
+/// Returns a lower bound of the distance between two parts, m: the distance between the ball of one and the
+/// box of the other. ball, box: their part numbers.
 double ContactFinder::clearance(int ball, int box) const {
   const Placed &a = scratch_->parts[at(ball)], &b = scratch_->parts[at(box)];
   const double bulge = kBulge * model_->parts()[at(box)].part->size();
@@ -121,8 +123,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood_of(const State& state,
   return further > foreseen.spare ? neighbourhood(state, &after, t, h, reach) : foreseen;
 }
 
-// Above 60 lines: planes, obstacles and pairs update one result in this order, and the search of pairs is
-// skipped if it cannot change that result.
+// Longer than 60 lines, because planes, obstacles and pairs update one result in this order. The search of
+// pairs is skipped if it cannot change that result.
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, const State* after, double t,
                                                           double h, double reach) const {
   Neighbourhood near;

@@ -13,10 +13,11 @@ namespace pliant {
 
 namespace {
 
-/// Contacts belong to one face if their normals differ by less than kOneNormal and their gaps differ from a
-/// plane by at most kOnePlane, in sizes.
+/// Contacts belong to one face if their normals differ by at most kOneNormal and their gaps differ by at most
+/// kOnePlane, in sizes of the smaller part, from a linear function of the position on the face.
 constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
-/// A corner of the outline is farther than this from the chord of its neighbours, in sizes.
+/// A point of the hull is a corner of the outline if its distance from the chord of its neighbours exceeds
+/// this, in sizes.
 constexpr double kMinCorner = 1e-5;
 /// A contact that is deeper than all corners by more than this, in sizes, is kept.
 constexpr double kDeeper = 1e-11;
@@ -28,7 +29,7 @@ struct Place {
   std::size_t number;
 };
 
-/// Twice the area of a triangle, positive if it is counter-clockwise.
+/// Twice the area of a triangle, positive if a, b, c are counter-clockwise.
 double turn(const Place& a, const Place& b, const Place& c) {
   const Eigen::Vector2d ab = b.p - a.p, ac = c.p - a.p;
   return ab.x() * ac.y() - ab.y() * ac.x();
@@ -41,8 +42,8 @@ double distance_to_chord(const Place& a, const Place& b, const Place& c) {
   return (ab - along * ac).norm();
 }
 
-/// Returns the convex hull of places, counter-clockwise, by Andrew's monotone chains (1979). It keeps points
-/// on sides that are straight except for rounding; keep_outline() removes them.
+/// Returns the convex hull of points, counter-clockwise, by Andrew's monotone chains (1979). The hull may
+/// keep points on its straight sides because of rounding; keep_outline() removes them.
 std::vector<Place> hull(std::vector<Place> places) {
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
@@ -92,7 +93,7 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
       around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));
   }
   std::vector<bool> corner(contacts.size(), false);
-  double deepest = std::numeric_limits<double>::infinity();  // gap of a corner
+  double deepest = std::numeric_limits<double>::infinity();  // least gap of the corners, m
   for (const Place& place : around) {
     corner[place.number] = true;
     deepest = std::min(deepest, contacts[place.number].gap);

@@ -8,9 +8,10 @@
 
 namespace pliant {
 
-/// Removes contacts from number `first` on that are inside the outline of contacts with an equal normal and
-/// are not the deepest. Non-penetration at the remaining contacts implies non-penetration at the removed
-/// ones. All contacts from `first` on must belong to one pair. size: of the smaller part, m.
+/// Removes contacts with index >= `first` that are inside the convex hull of these contacts. It keeps the
+/// deepest contact, and removes none unless all normals are equal. Non-penetration at the remaining contacts
+/// implies non-penetration at the removed ones. All contacts from `first` on must belong to one pair. size:
+/// size of the smaller part, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);
 
 }  // namespace pliant

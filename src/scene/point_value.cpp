@@ -47,11 +47,10 @@ Record by_direction() {
 }
 
 Record by_place() {
-  return {
-      "point_near",
-      "A material point of the rest shape, given by its position. For a position outside the part, at most "
-      "twice as far out as the surface, the surface point with the u and v of this position.",
-      {required("near", vector3("m"), "Position in the part's frame.", "[0, 0, 1]"), patch()}};
+  return {"point_near",
+          "A material point of the rest shape, given by its position. A position outside the part, at most "
+          "twice as far out as the surface, gives the surface point with the u and v of this position.",
+          {required("near", vector3("m"), "Position in the part's frame.", "[0, 0, 1]"), patch()}};
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ class SceneReader {
 
   /// Warns if the surface mesh of a part is too coarse to show its twist.
   void check_mesh(const Reader& r, const Part& part, int resolution) {
-    double turns = 0;  // of the twist between the two ends; the twist angle is that of half the length
+    double turns = 0;  // of the twist between the two ends; twist.angle is the angle between middle and end
     for (int i = 0; i < part.parameters().size(); ++i) {
       const Parameter& p = part.parameters()[i];
       if (p.name.rfind("twist", 0) == 0)  // "twist.angle", "twist2.angle"

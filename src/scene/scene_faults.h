@@ -1,5 +1,5 @@
-// Faults found while a validated document is read, for example unknown part names. Each is reported at its
-// value, as
+// Faults found while a validated document is read, for example unknown part names. Each fault is reported at
+// its value, as
 //   value; the fault; expected ...; nearest name
 #pragma once
 
@@ -31,7 +31,8 @@ class SceneFaults {
 
   /// Adds the error "name given twice" at `again`, a name that the value `first` also has.
   void twice(const JsonValue& first, const JsonValue& again);
-  /// Adds the error of a name that is not among `names`; kind: of the names, for example "part".
+  /// Adds the error of a name that is not among `names`. kind: kind of thing that has such a name, for
+  /// example "part".
   void unknown(const JsonValue& name, const std::string& kind, const std::vector<std::string>& names);
 
  private:

@@ -18,8 +18,8 @@ void check_formula(const JsonValue& value, const ReportAt& report) {
   }
 }
 
-/// Returns the rule that times increase and that there are as many values as times. values: the key of the
-/// values.
+/// Returns the rule for key frames: their times increase, and there are as many values as times. values: the
+/// JSON key of the values.
 Check key_rule(const char* values) {
   return [values](const JsonValue& frames, const ReportAt& report) {
     const JsonValue::Array& t = frames.find("t")->array();
@@ -30,7 +30,7 @@ Check key_rule(const char* values) {
              kWholeValue);
     }
     if (y.array().size() != t.size()) {
-      report(y, "expected as many as there are times, " + std::to_string(t.size()), kWholeValue);
+      report(y, "expected one for each time, that is " + std::to_string(t.size()), kWholeValue);
     }
   };
 }
@@ -49,9 +49,9 @@ Type key_frames() {
                  "before the first and after the last key.",
                  {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
                   required("y", array(number(unbounded(), ""), 1),
-                           "Values at these times, in the unit of the key.", "[0, 0.5, 0]"),
+                           "Values at these times, in the unit of the function.", "[0, 0.5, 0]"),
                   optional("end_rates", array(number(unbounded(), ""), 2, 2),
-                           "Rates of change at the first and the last key; when absent, the second "
+                           "Rates of change at the first and the last key frame; when absent, the second "
                            "derivative is zero there.")}})
       .checked(key_rule("y"));
 }
@@ -62,7 +62,7 @@ Type point_key_frames() {
                  "constant before the first and after the last key.",
                  {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
                   required("points", array(vector3(""), 1),
-                           "Points [x, y, z] at these times, in the unit of the key.",
+                           "Points [x, y, z] at these times, in the unit of the function.",
                            "[[0, 0, 0], [0, 0, 1], [0, 0, 0]]")}})
       .checked(key_rule("points"));
 }

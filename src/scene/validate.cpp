@@ -20,13 +20,13 @@ using schema::Type;
 using TypeKind = Type::Kind;
 using ValueKind = JsonValue::Kind;
 
-/// For each key, the records that declare it, as pointer patterns "/parts/*".
+/// For each key, the places of the records that declare it, as pointer patterns such as "/parts/*".
 using Places = std::map<std::string, std::vector<std::string>>;
 
-/// Adds the keys of all records inside a type, whose values are at the pointer pattern `at`.
+/// Adds the keys of all records inside a type. at: pointer pattern of the values of this type.
 void collect(const Type& type, const std::string& at, Places* places);
 
-/// Adds the keys of a record; note: appended to the pattern, for example  of type "rod".
+/// Adds the keys of a record. note: text after the pattern, for example `of type "rod"`.
 void collect(const Record& record, const std::string& at, const std::string& note, Places* places) {
   for (const Field& field : record.fields) {
     std::vector<std::string>& known = (*places)[field.key];
@@ -365,7 +365,7 @@ class Validator {
   const JsonDocument& document_;
   Diagnostics& faults_;
   FaultyValues reported_;
-  Places places_;  ///< filled at the first unknown key
+  Places places_;  ///< computed at the first unknown key
   const Type* root_type_ = nullptr;
   const Type* alternatives_ =
       nullptr;  ///< the alternatives that contain the record to be checked next, or null

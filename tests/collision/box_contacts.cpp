@@ -1,4 +1,4 @@
-// Contacts of boxes: closed forms, and separation in no direction larger than the reported gap.
+// Contacts of boxes against closed forms; no direction separates two boxes by more than the reported gap.
 #include "catch.h"
 
 #include <algorithm>
@@ -60,7 +60,8 @@ TEST_CASE("a box on a box touches at the corners of the common area", "[contact]
     CHECK(touch.x.head<2>().norm() == Approx(std::hypot(1, std::sqrt(2.0) - 1)));
 }
 
-TEST_CASE("crossed edges touch at one point, corners above a face at the corners", "[contact]") {
+TEST_CASE("crossed edges touch at one point; a box with a corner above a face touches at the corner",
+          "[contact]") {
   const double r = std::sqrt(0.5);
   const PlacedBox below{{0, 0, 0}, rotation(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}},
       above{{0.3, 0.1, 2 * r - 1e-3}, rotation(0.4, {0, 0, 1}) * rotation(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}};
@@ -103,7 +104,7 @@ TEST_CASE("no direction separates boxes by more than their gap, and a swap of th
       const Vec3<double> in_a = a.R.transpose() * (touch.x - a.c);
       CHECK((in_a.cwiseAbs() - a.half).maxCoeff() < 1e-12);
     }
-    if (min_gap(found) > 0) continue;  // for separated boxes the extent is at most their distance
+    if (min_gap(found) > 0) continue;  // the gap of separated boxes may be less than their distance
     ++overlapping;
     for (int k = 0; k < 200; ++k) {
       const Vec3<double> n = draws.vector(1).normalized();

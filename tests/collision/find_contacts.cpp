@@ -63,12 +63,13 @@ TEST_CASE("the lowest point of an ellipsoid over a plane", "[contact]") {
 }
 
 TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane", "[contact]") {
-  // A contact on a rim is at a vertex of the mesh or between two: up to 3e-4 of the part above the lowest
-  // point.
+  // A contact on a rim is at a vertex of the sample mesh or between two vertices. It is above the lowest
+  // point by up to 3e-4 of the extent of the part.
   struct Kind {
     const char* shape;
     Part::Named rest;
-    // depth below the centre, from components along and across the axis
+    // depth of the lowest point below the centre, m; along, across: components of the plane normal along and
+    // across the axis of the shape
     std::function<double(double, double)> depth;
     double above;
   };
@@ -111,7 +112,7 @@ TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane
     }
 }
 
-TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, in either order of the parts",
+TEST_CASE("an ellipsoid and a ball: the error of the gap is of second order, for both orders of the parts",
           "[contact]") {
   Draws draws(12);
   for (int trial = 0; trial < 60; ++trial) {
@@ -132,7 +133,8 @@ TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, in either 
       REQUIRE(found.size() == 1);
       errors.push_back(std::abs(found[0].gap - gap));
       CHECK(errors.back() <= 100 * gap * gap + 1e-14);
-      const double sharp = axes.maxCoeff() / std::pow(axes.minCoeff(), 2);  // the largest curvature
+      const double sharp =
+          axes.maxCoeff() / std::pow(axes.minCoeff(), 2);  // the largest curvature of the ellipsoid
       CHECK((found[0].normal - (ball_first ? n : -n)).norm() < 2 * (sharp + 1 / r) * std::abs(gap) + 1e-13);
       CHECK((found[0].x - x).norm() < 20 * std::abs(gap) + 1e-13);
     }
@@ -186,8 +188,8 @@ TEST_CASE("the closed forms of ellipsoids agree with the search for other shapes
     for (std::size_t k = 0; k < 2; ++k) {
       CHECK(found[k].plane == searched[k].plane);
       const double between = (found[k].x - searched[k].x).norm();
-      CHECK(between < 1e-4);  // square root of the accuracy of the heights
-      // Levels are stationary at the contact; the scale that converts them to heights is not.
+      CHECK(between < 1e-4);  // points agree to the square root of the accuracy of the heights
+      // The level w is stationary at the contact; the factor 1 / |grad w| that converts it to a gap is not.
       const double tolerance = 1e-9 + 10 * std::abs(found[k].gap) * between;
       CHECK(std::abs(found[k].gap - searched[k].gap) <= tolerance);
       CHECK((found[k].normal - searched[k].normal).norm() < 1e-3);
@@ -199,7 +201,7 @@ TEST_CASE("faces whose edges coincide to rounding touch at all corners", "[conta
   Draws draws(29);
   auto rounding = [&] { return Vec3<double>(1e-12 * draws.vector(1)); };
   for (int trial = 0; trial < 500; ++trial) {
-    // Some boxes are upright, as rounding decides the order of corners there; others are rotated.
+    // Some boxes are upright, because rounding decides the order of their corners; others are rotated.
     const Eigen::Quaterniond R = trial % 3 < 2 ? Eigen::Quaterniond::Identity() : random_rotation(draws);
     // Edges coincide along one direction; along the other they coincide or the upper box is displaced.
     const double aside = trial % 2 == 0 ? 0 : 0.005;

@@ -47,8 +47,8 @@ double fall_height(double t) {
 }  // namespace
 
 TEST_CASE("groups and pairs of a scene determine the contacts", "[contact]") {
-  // Columns of two balls, the upper 0.1 m above the lower, which touches the floor. Depending on the rules
-  // they stack, overlap, or fall through the floor.
+  // Columns of two balls: the lower ball touches the floor, and the upper ball is 0.1 m above the lower one.
+  // Depending on the rules the balls stack, overlap, or fall through the floor.
   const std::string parts = "\"parts\": [" + ball("plain", 0, 0.1) + "," + ball("plain2", 0, 0.4) + "," +
                             ball("crumb", 1, 0.1) + "," + ball("crumb2", 1, 0.4) + "," +
                             ball("ghost", 2, 0.1) + "," + ball("ghost2", 2, 0.4) + "," + ball("odd", 3, 0.1) +
@@ -66,7 +66,7 @@ TEST_CASE("groups and pairs of a scene determine the contacts", "[contact]") {
   CHECK(run.height("crumb2") == Approx(0.1).margin(1e-9));
   CHECK(run.height("ghost") == Approx(0.1 - fall_height(0.6)).epsilon(1e-9));
   CHECK(run.height("ghost2") ==
-        Approx(0.1).margin(1e-9));  // a pair rule of its own parts takes precedence over rules of its group
+        Approx(0.1).margin(1e-9));  // a rule that names the part takes precedence over a rule of its group
   CHECK(run.height("odd") == Approx(0.1).margin(1e-9));
   CHECK(run.height("crumb3") == Approx(0.3).margin(1e-9));
 }

@@ -26,7 +26,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Sanitizers make a case thirty times as slow: they run one of sixteen cases, other builds all of them.
+// Sanitizers make a case thirty times as slow. Builds with them run one of sixteen cases, other builds all
+// cases.
 #ifdef PLIANT_SANITIZED
 constexpr int kEach = 16;
 #else
@@ -172,7 +173,7 @@ class Mutator {
 
 enum class Outcome { refused, ready };
 
-/// Loads a scene as `pliant check` does before it steps. Other exceptions are passed on.
+/// Loads a scene as `pliant check` does before its trial steps. Unexpected exceptions are passed on.
 Outcome load(const std::string& name, const std::string& text) {
   pliant::Diagnostics diagnostics;
   try {
@@ -194,7 +195,7 @@ Outcome load(const std::string& name, const std::string& text) {
   }
 }
 
-/// Loads a mutated scene, and reports the scene if it fails in another way.
+/// Loads a mutated scene, and reports the scene if an unexpected exception occurs.
 void load_mutated(const Sample& sample, const std::string& text, int* ready) {
   try {
     *ready += load(sample.name, text) == Outcome::ready ? 1 : 0;

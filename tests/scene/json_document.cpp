@@ -152,20 +152,20 @@ TEST_CASE("columns count characters, also inside strings with escapes") {
   CHECK(column(0) == 19);  // a
   CHECK(column(1) == 20);  // \n
   CHECK(column(2) == 22);  // \u00e9
-  CHECK(column(3) == 22);  // its second byte
+  CHECK(column(3) == 22);  // the second byte of \u00e9
   CHECK(column(4) == 28);  // the surrogate pair
   CHECK(column(8) == 40);  // b
   CHECK(column(9) == 41);  // the closing quote
   CHECK(column(99) == 41);
 }
 
-TEST_CASE("I02 an empty file is named") {
+TEST_CASE("I02 an empty file is reported as empty") {
   CHECK(faults("") == "s.json:1:1: error: empty; expected a JSON object\n");
   CHECK(faults(" \n\t ") == "s.json:1:1: error: empty; expected a JSON object\n");
   CHECK(faults("\xEF\xBB\xBF\n") == "s.json:1:1: error: empty; expected a JSON object\n");
 }
 
-TEST_CASE("I03 syntax errors come with the remedy") {
+TEST_CASE("I03 messages of syntax errors contain the correction") {
   CHECK(faults("{\"a\": [1, 2,]}") == "s.json:1:12: error: a comma before \"]\"; remove it\n");
   CHECK(faults("{\"a\": 1,\n}") == "s.json:1:8: error: a comma before \"}\"; remove it\n");
   CHECK(faults("{\"a\": [1, 2}") ==

@@ -56,7 +56,7 @@ TEST_CASE("meshes are read from every supported format") {
                "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
                "endfacet\nendsolid a\n")
           .empty());
-  // A glTF node with two triangles, translated by 2 and scaled by 2.
+  // A glTF node with one triangle, scaled by 2 and then translated by 2 along z.
   const NewFolder folder;
   set_bytes(folder / "a.gltf",
             R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
@@ -90,7 +90,7 @@ TEST_CASE("invalid meshes are refused with the reason") {
   CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 9\n")), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 7\n")), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 -1\n")), test::has_text("the file is not a mesh: "));
-  // the header announces two more vertices
+  // the header announces two more vertices than the file has
   CHECK_FALSE(error_of("a.ply", ply(6, "3 0 1 2\n3 2 1 3\n")).empty());
   CHECK_THAT(error_of("a.obj", ""), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.obj", "this is text, and nothing else\n"),

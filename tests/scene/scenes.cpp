@@ -36,7 +36,7 @@ std::vector<fs::path> scenes_in(const fs::path& folder) {
   return all;
 }
 
-/// Returns the scene as a plain JSON value; discarded if it is not JSON.
+/// Returns the scene as a JSON value; its is_discarded() is true if the file is not JSON.
 nlohmann::json json_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return nlohmann::json::parse(file, nullptr, false);
@@ -113,7 +113,7 @@ TEST_CASE("the twisting tube passes its largest twist, the soft chain stretches,
   run("twisting_tube.json", 0.8, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
     smallest = std::min(smallest, simulation.state().q[7]);
   });
-  CHECK(smallest < -2);  // it starts at 2.5
+  CHECK(smallest < -2);  // the initial value is 2.5
   double longest = 0;
   run("soft_chain.json", 0.7, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
     REQUIRE(simulation.model().gap(simulation.state(), 3) < 1e-12);
@@ -142,7 +142,7 @@ TEST_CASE("the ringing sphere: its dents spring out and back, it rotates, moment
     if (out > 0.55) in = std::min(in, dent);
     rotation_angle = 2 * std::acos(std::abs(simulation.state().q[3]));
   });
-  CHECK(out > 0.55);  // from 0.38; the radius is 0.5
+  CHECK(out > 0.55);  // initially 0.38; the radius of the undented sphere is 0.5
   CHECK(in < 0.53);
   CHECK(largest > 1.2 * smallest);
   CHECK(rotation_angle == Approx(0.45 * std::sqrt(1.2)).epsilon(0.1));
@@ -184,7 +184,7 @@ TEST_CASE("the rubber bar bends to one side and to the other, and rotates", "[lo
   });
   CHECK(largest > 0.15);
   CHECK(smallest < -0.15);
-  CHECK(along[1] > 0.4);  // from 0
+  CHECK(along[1] > 0.4);  // initially 0
   CHECK(std::abs(along[0]) < 0.01);
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("a spring pulls the membrane of a shell outwards, and its parameters a
     a1 = std::max(a1, state.q[7]);
     others = std::max({others, std::abs(state.q[8] - 0.4), std::abs(state.q[9] - 0.6)});
   });
-  CHECK(pulled_x > 0.8);  // from 0.4
+  CHECK(pulled_x > 0.8);  // initially 0.4
   CHECK(local > 0.35);
   CHECK(a1 > 1.05 * 0.4);
   CHECK(others < 0.2 * (a1 - 0.4));
@@ -241,7 +241,7 @@ TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and closed jo
   struct Case {
     const char* name;
     std::size_t joints;
-    double until;  // s; the assembly is complete then
+    double until;  // time at which the assembly is complete, s
   };
   for (const Case& c : {Case{"dragonfly.json", 4, 3.3}, Case{"snowman.json", 12, 3.1}}) {
     INFO(c.name);
@@ -303,7 +303,7 @@ TEST_CASE("comments and extensions are allowed everywhere, and ignored") {
   CHECK(schema().accepts(nlohmann::json::parse(text)));
 }
 
-TEST_CASE("points given by direction or by position are there on the rest shape") {
+TEST_CASE("points given by direction or by position are resolved on the rest shape") {
   const std::string text = R"json({
     "parts": [{"name": "horn", "shape": "superellipsoid", "deformations": ["taper", "bend"],
                "parameters": {"a3": 2, "eps2": 0.4, "taper.tx": -0.5, "bend.angle": 1, "bend.direction": 0.3}}],
@@ -319,7 +319,7 @@ TEST_CASE("points given by direction or by position are there on the rest shape"
     const pliant::Part& horn = *point.part;
     return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
   };
-  // A plate thinner than the sampling of the ray, away from the origin.
+  // A plate away from the origin that is thinner than the distance of the samples on the ray.
   pliant::Diagnostics none;
   const auto plate = pliant::parse_scene("s.json", R"json({
     "parts": [{"name": "plate", "shape": "cylinder", "deformations": ["shear", "bend_offset"],

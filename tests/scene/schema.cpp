@@ -101,7 +101,8 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
-/// Return the errors of one part, spring or solver with the given members and the required ones.
+/// Return the errors of a scene with one part, spring or solver that has the given members besides the
+/// required ones.
 std::string part_faults(const std::string& members) {
   return faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": 1,\n" + members +
                 "}]}");
@@ -319,10 +320,10 @@ TEST_CASE("errors of key frames are reported") {
   CHECK(spring_faults(begin + "{\"t\": [0, 1, 1], \"y\": [0, 1, 2]}") ==
         "s.json:2:71: error: /springs/0/stiffness/t/2: 1; expected a time later than the one before it, 1\n");
   CHECK(spring_faults(begin + "{\"t\": [0, 1], \"y\": [0]}") ==
-        "s.json:2:77: error: /springs/0/stiffness/y: [0]; expected as many as there are "
-        "times, 2\n");
+        "s.json:2:77: error: /springs/0/stiffness/y: [0]; expected one for each time, that "
+        "is 2\n");
   CHECK(spring_faults("\"at\": {\"near\": [0, 0, 0]}, \"to\": {\"t\": [0, 1], \"points\": [[0, 0, 0]]}") ==
-        "s.json:2:58: error: /springs/0/to/points: [[0, 0, 0]]; expected as many as there are times, "
+        "s.json:2:58: error: /springs/0/to/points: [[0, 0, 0]]; expected one for each time, that is "
         "2\n");
 }
 

@@ -144,7 +144,7 @@ TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[conta
 TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
   constexpr double kImpact = 0.05, kLast = 12.8;  // s
   double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0;
-  VecX<double> undeformed;  // deformation of the middle balloon at the last time without contact
+  VecX<double> undeformed;  // parameters and displacements of the middle balloon at the last time without contact
   const int contact_starts = run_scene("balloons", [&](Simulation& simulation) {
     const double t = simulation.time();
     const VecX<double> now = deformation(simulation, "balloon5");
@@ -161,9 +161,9 @@ TEST_CASE("balloons swing, collide, deform and come to rest without deep overlap
       fastest = std::max(fastest, simulation.state().v.segment<3>(part.v0).norm());
   });
   CHECK(contact_starts >= 5);
-  CHECK(dent > 0.01);  // the radius is 0.1
+  CHECK(dent > 0.01);  // m; the radius is 0.1 m
   CHECK(kinetic < 1e-3 * max_kinetic);
-  CHECK(fastest < 0.025);  // during the last second; 1.5 m/s at first
+  CHECK(fastest < 0.025);  // m/s, during the last second; initially 1.5 m/s
 }
 
 TEST_CASE("the springboard throws up the ball on its end, and all parts deform", "[contact][long]") {
@@ -180,7 +180,7 @@ TEST_CASE("the springboard throws up the ball on its end, and all parts deform",
     dent = std::max(dent, (deformation(simulation, "yellow") - before).lpNorm<Eigen::Infinity>());
   });
   CHECK(contact_starts >= 2);
-  CHECK(highest > start + 0.25);  // twice its radius
+  CHECK(highest > start + 0.25);  // 0.25 m is twice the radius of the ball
   CHECK(bend_range.width() > 0.02);
   CHECK(dent > 0.02);
 }
@@ -231,7 +231,7 @@ TEST_CASE("closed joints of the dragonfly and the snowman stay closed in every i
         if (!closed[j]) continue;
         INFO(simulation.model().joints()[j].joint->name());
         REQUIRE(modes[j] == JointMode::closed);
-        // 1e-6 of a body length is required; 5e-14 m has been observed.
+        // Required is a gap below 1e-6 of the length of the body; 5e-14 m has been observed.
         REQUIRE(simulation.model().gap(simulation.state(), static_cast<int>(j)) <= 1e-12);
       }
     });

@@ -1,7 +1,7 @@
 // Contacts of a box with a box and with a ball, in closed form. Two boxes are tested along the face normals
-// of both and across each pair of their edges (separating axes: Gottschalk, Lin and Manocha 1996). Where the
-// face of one box has the largest gap, the opposite face of the other box is clipped to it, and the corners
-// of the clipped face are the contact points.
+// of both and across each pair of their edges (separating axes: Gottschalk, Lin and Manocha 1996). If
+// the gap is largest along a face normal, the opposite face of the other box is clipped to that face, and the
+// corners of the clipped face are the contact points.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct PlacedBox {
 struct BoxTouch {
   Vec3<double> x;       ///< point on the surface of a, m, world
   Vec3<double> normal;  ///< unit vector from b to a, world
-  double gap;           ///< along the normal, m; negative where the boxes overlap
+  double gap;           ///< distance along the normal, m; negative where the sides overlap
 };
 
 /// Returns the eight corners of a box with these half sizes, in its own frame.
@@ -31,8 +31,8 @@ std::array<Vec3<double>, 8> box_corners(const Vec3<double>& half);
 /// boxes is the distance between the two parallel planes that separate them along the chosen axis.
 void touch_boxes(const PlacedBox& a, const PlacedBox& b, double max_gap, std::vector<BoxTouch>& found);
 
-/// Returns the point of a ball (centre and radius in m, world) that is nearest to a box, or deepest inside
-/// it. The ball is side a.
+/// Returns the contact of a ball (centre and radius in m, world) and a box. Its point is the point of the
+/// ball nearest to the box, or deepest inside the box. The ball is side a.
 BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box);
 
 }  // namespace pliant

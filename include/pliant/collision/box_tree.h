@@ -14,14 +14,14 @@ class BoxTree {
  public:
   /// Builds the tree. boxes: must outlive all later queries.
   void build(const std::vector<Eigen::AlignedBox3d>& boxes);
-  /// Computes all pairs (i, j), i < j, whose boxes are at most max_distance (m) apart, sorted. `pairs` is
-  /// overwritten.
+  /// Computes all pairs (i, j) of box numbers, i < j, whose boxes are at most max_distance (m) apart, sorted
+  /// by i and then j. `pairs` is overwritten.
   void near_pairs(double max_distance, std::vector<std::pair<int, int>>& pairs) const;
 
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    int first, last;  ///< range of order_
+    int first, last;  ///< range [first, last) of order_
     int right = -1;   ///< index of the second child; -1 for a leaf; the first child follows its parent
   };
   int split(int first, int last);

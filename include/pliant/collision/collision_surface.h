@@ -1,6 +1,7 @@
-// The surface of a part for contact search: sample points all over it, and the lowest points of a height
-// field on it. The search starts from sample points and is refined on the surface itself, so that round parts
-// roll smoothly. Ellipsoids over planes and over each other need no sample points (ellipsoid_points.h).
+// The surface of a part for contact search: sample points all over the surface, and its lowest points over a
+// plane or another part. The search starts from sample points and is refined on the surface itself, so that
+// round parts roll smoothly. Ellipsoids over planes and over each other need no sample points
+// (ellipsoid_points.h).
 #pragma once
 
 #include <optional>
@@ -21,8 +22,7 @@ class CollisionSurface {
    public:
     virtual ~Field() = default;
     virtual double height(const Vec3<double>& p) const = 0;  ///< m
-    /// Cheaper function with the zeros of height(), which the search minimises. It is in m and close to
-    /// height() where it is small.
+    /// Returns a cheaper function with the zeros of height(), m. The search minimises it.
     virtual double descent(const Vec3<double>& p) const = 0;
   };
   /// The height over a plane. normal: unit vector, body frame; offset: height of the origin of the frame, m.
@@ -46,24 +46,26 @@ class CollisionSurface {
   std::optional<Vec3<double>> semi_axes(const ParameterValues<double>& values) const;
   /// Returns the half sizes (m) if the part is a box at these values.
   std::optional<Vec3<double>> half_sizes(const ParameterValues<double>& values) const;
-  /// Returns the point of an ellipsoid for the unit vector y of its unit ball. The caller sets the height.
+  /// Returns the point with p = axes * y (entry by entry) of an ellipsoid; y: unit vector. The caller sets
+  /// the height.
   LowPoint ellipsoid_point(const ParameterValues<double>& values, const Vec3<double>& axes,
                            const Vec3<double>& y) const;
-  /// Radius of a ball about the frame's origin that contains the part, m.
+  /// Radius of a ball about the origin of the frame that contains the part, m. For a part with dynamic
+  /// parameters that is no ellipsoid it is estimated from few points.
   double reach(const ParameterValues<double>& values) const;
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
 
-  /// Computes all sample points, body frame, m.
+  /// Computes all sample points: one column for each, body frame, m.
   Eigen::Matrix3Xd points(const ParameterValues<double>& values) const {
     return part_->s(samples().surface.material(), values);
   }
-  /// Sample points at the rest shape, and a box that contains the surface there.
+  /// Sample points of the rest shape, and a box that contains the surface of the rest shape, body frame, m.
   const Eigen::Matrix3Xd& rest_points() const { return samples().points; }
   const Eigen::AlignedBox3d& rest_box() const { return samples().box; }
-  /// Returns the points that support the part: the lowest point and, where an edge or a face is level, the
-  /// outermost points along it; none is higher than max_gap (m). A level face has up to four, so that boxes
-  /// stand. p, heights: the sample points and the field at each of them.
+  /// Returns the points that support the part: the lowest point and the outermost points of a level edge or
+  /// face. None is higher than max_gap (m). A level face has up to four, so that boxes stand. p: the sample
+  /// points, as columns in the body frame, m; heights: field.height() at each of them, m.
   std::vector<LowPoint> low_points(const ParameterValues<double>& values, const Eigen::Matrix3Xd& p,
                                    const VecX<double>& heights, double max_gap, const Field& field) const;
 
@@ -71,18 +73,18 @@ class CollisionSurface {
   /// Sample points, computed at the first call of samples().
   struct Samples {
     Surface surface;
-    Eigen::Matrix3Xd points;  ///< at rest
+    Eigen::Matrix3Xd points;  ///< of the rest shape, body frame, m
     Eigen::AlignedBox3d box;
     double reach;
-    std::vector<Material<double>> coarse;  ///< points for the reach of a part with dynamic parameters
+    std::vector<Material<double>> coarse;  ///< points that estimate reach() of a part with dynamic parameters
   };
   const Samples& samples() const;
-  /// Minimises the field from sample point i, at most as far as its neighbours.
+  /// Minimises field.descent() from sample point i. The search stays between the neighbours of that point.
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
   mutable std::optional<Samples> samples_;
-  double spacing_;  ///< of the sample points, in the coordinates of mesh_label()
+  double spacing_;  ///< angle between neighbouring sample points, rad
   double thickness_;
 };
 

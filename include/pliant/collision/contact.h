@@ -7,13 +7,13 @@
 
 namespace pliant {
 
-/// One side of a contact: a material point of a part. For a part that deforms locally it is a point between
-/// up to three nodes of its mesh; or the part as a whole, where the part is separated from another one that
-/// it overlaps deeply.
+/// One side of a contact: a material point of a part. If the part deforms locally, the side is a point
+/// between up to three nodes of its mesh. In a deep overlap of two parts the contact acts on each part as a
+/// whole; the side then has no nodes.
 struct ContactSide {
   int part = -1;                                ///< number of the part; -1 for a plane or an obstacle
   Material<double> material;                    ///< material point of the part
-  std::array<int, 3> node{-1, -1, -1};          ///< nodes of the mesh instead of it; -1 marks an unused entry
+  std::array<int, 3> node{-1, -1, -1};          ///< mesh nodes that define the point; -1: unused entry
   Vec3<double> weight = Vec3<double>::UnitX();  ///< weights of these nodes; their sum is 1
 
   bool at_nodes() const { return node[0] >= 0; }
@@ -25,12 +25,12 @@ struct Contact {
   Vec3<double> x = Vec3<double>::Zero();       ///< contact point, m, world
   Vec3<double> normal = Vec3<double>::Zero();  ///< unit vector from b to a, world
   double gap = 0;                              ///< m; negative: depth of the overlap
-  /// Prescribed part of the velocity of side b relative to side a at x, m/s, world: the motion of a plane or
-  /// of a part without coordinates.
+  /// Prescribed contribution to the velocity of side b relative to side a at x, m/s, world. It comes from the
+  /// motion of a plane or of a part with prescribed motion.
   Vec3<double> carried = Vec3<double>::Zero();
   double friction = 0, restitution = 0;
-  /// Time since the impulse of this contact acted, s. The positions of the pushed bodies change by this time
-  /// multiplied by their change of velocity.
+  /// Time since the impulse of this contact acted, s. The positions of the pushed parts change by this time
+  /// multiplied by the change of their velocities.
   double since = 0;
   /// Least normal velocity with which the sides separate after the impulse, m/s.
   double rebound = 0;

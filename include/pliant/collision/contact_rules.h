@@ -23,7 +23,7 @@ double smaller_size(const Model& model, const Contact& contact);
 class ContactRules {
  public:
   /// model: must outlive this object. Throws std::invalid_argument for numbers out of range, for unknown
-  /// names, and for names that stand for two things.
+  /// names, and for a name that is used twice.
   explicit ContactRules(const Model& model);
 
   /// Returns the rule of two parts, in any order.
@@ -44,7 +44,7 @@ class ContactRules {
   int n_parts_, n_planes_;
   // Parts, planes, obstacles and groups are numbered together, in this order. Pairs of numbers are sorted.
   std::vector<std::vector<int>> groups_of_;       // groups of each part, plane and obstacle
-  std::map<std::pair<int, int>, int> last_pair_;  // two numbers -> last pair of the settings that names both
+  std::map<std::pair<int, int>, int> last_pair_;  // two numbers -> index of the last pair that names both
   std::set<std::pair<int, int>> joined_;          // parts that share a joint
 };
 

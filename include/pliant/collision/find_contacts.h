@@ -1,5 +1,5 @@
-// Contact search of parts without local deformation. A tree of boxes finds which parts are near each other.
-// Then the low points of each part over planes, obstacles and other parts are the contacts.
+// Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
+// other. The contacts are the lowest points of each part over planes, obstacles and the parts near it.
 #pragma once
 
 #include <memory>
@@ -25,16 +25,18 @@ class ContactFinder {
   /// Meshes of the obstacles, in the order of the settings; references stay valid as long as this object.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). marked: if given, only
-  /// contacts of marked parts. Order: part by part, first planes and then obstacles; after these
-  /// all pairs of parts.
+  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). marked: one entry
+  /// for each part; if given, only contacts with at least one marked part. Order: part by part, first planes
+  /// and then obstacles; after these all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
                             const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Velocity of side a relative to side b at a contact, m/s, world.
+  /// Velocity of side a relative to side b at a contact, m/s, world. It includes prescribed motion
+  /// (`carried`).
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// Largest depth (m) of a contact at which the search still finds the side on which the parts touch.
+  /// Largest depth (m) of a contact at which the search still finds the side on which the parts touch. Only
+  /// for parts without local deformation.
   double thin(const Contact& contact) const;
   /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
   /// one.
@@ -52,12 +54,12 @@ class ContactFinder {
     /// velocities adds, m. done: the step is already done, and a small excess is tolerated.
     void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
-  /// Returns the neighbourhood of a coming step of h seconds. reach: displacement in the step by an
-  /// acceleration, in units of acceleration * h^2 (see Integrator). Of all forces only gravity is
-  /// predicted.
+  /// Returns the neighbourhood of a coming step from time t (s) of h seconds. reach: the displacement by a
+  /// constant acceleration in the step, as a multiple of acceleration * h^2; it depends on the method (see
+  /// Integrator). The only predicted force is gravity.
   Neighbourhood neighbourhood(const State& state, double t, double h, double reach = 0.5) const;
   /// Returns the neighbourhood of a step that has led to the state `after`. foreseen: the result of
-  /// neighbourhood() for this step or a longer one, which is returned where it still holds.
+  /// neighbourhood() for this step or a longer one. It is returned if no part moved beyond foreseen.spare.
   Neighbourhood neighbourhood_of(const State& state, const State& after, double t, double h, double reach,
                                  const Neighbourhood& foreseen) const;
   /// Returns the least gap of the part of a contact over its other part, plane or obstacle, m; at most
@@ -99,9 +101,9 @@ class ContactFinder {
   const Model* model_;
   std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // nullptr for parts that deform locally
   ContactRules rules_;
-  std::vector<ContactRule> on_planes_;  // number: part * number of planes + plane
+  std::vector<ContactRule> on_planes_;  // index: part * number of planes + plane
   std::vector<ObstacleMesh> obstacles_;
-  std::vector<ContactRule> on_obstacles_;  // number: part * number of obstacles + obstacle
+  std::vector<ContactRule> on_obstacles_;  // index: part * number of obstacles + obstacle
   bool has_pairs_;                         // whether parts may touch parts
   std::vector<int> smooth_parts_;          // numbers of the parts without local deformation
   std::unique_ptr<Scratch> scratch_;

@@ -21,7 +21,7 @@ using Color = std::array<double, 3>;
 /// Appearance of a part. A scene has one per part, in the order of MultiBody::parts().
 struct Appearance {
   Color color{0.8, 0.5, 0.2};
-  int resolution = 8;  ///< of the part's Surface: edges along an eighth of a circle
+  int resolution = 8;  ///< edges of the surface mesh along an eighth of a circle (class Surface)
   bool visible = true;
 };
 
@@ -48,7 +48,7 @@ struct Track {
 };
 
 struct CameraSetting {
-  std::optional<Vec3<double>> eye, target;  ///< positions, m; chosen automatically when absent
+  std::optional<Vec3<double>> eye, target;  ///< positions, m, world; chosen from the motion when absent
   double field_of_view = 35;                ///< vertical, degrees
 };
 

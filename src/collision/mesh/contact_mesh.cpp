@@ -11,15 +11,16 @@ namespace pliant {
 namespace {
 /// Edges along an eighth of a great circle, for the mesh of a part without nodes.
 constexpr int kMeshResolution = 6;
-/// Edges of a coarse mesh from which the reach and the speed of such a part are estimated, and the factor on
-/// the estimates.
+/// The reach and the speed of a part without nodes and with dynamic parameters are estimated from a coarse
+/// mesh with kCoarseMeshEdges edges along an eighth of a great circle. The estimates are multiplied by
+/// kCoarseMeshMargin.
 constexpr int kCoarseMeshEdges = 2;
 constexpr double kCoarseMeshMargin = 1.1;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
   std::vector<ContactMesh::Edge> edges;
-  std::map<std::pair<int, int>, std::size_t> known;  // by vertices, the smaller number first
+  std::map<std::pair<int, int>, std::size_t> known;  // edge number by its two vertices, the smaller first
   for (int t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int from = triangles(k, t), to = triangles((k + 1) % 3, t);

@@ -1,6 +1,7 @@
-// Deep overlap of two meshes, which can happen at the start of a run. The vertices of one are then nearer to
-// the far side of the other, so that single vertices and edges give wrong normals or dents. The parts are
-// separated as wholes along the direction n of least depth among a few candidates,
+// Deep overlap of two meshes, which can happen at the start of a run. The vertices of one
+// mesh are then nearer to the far side of the other. Contacts of single vertices and edges would have wrong
+// normals or make dents. The parts are separated as wholes along the direction n of least depth among a few
+// candidates,
 //   depth(n) = max_b n . x - min_a n . x,
 // over their vertices x.
 #include <algorithm>
@@ -21,11 +22,12 @@ namespace {
 /// An overlap is deep if it exceeds kDeep times the thickness of the thinner part and kTravels times the
 /// distance by which the step can have moved the parts relative to each other.
 constexpr double kDeep = 0.06, kTravels = 2;
-/// The line between centres that are nearer than this, in sizes, is no candidate.
+/// The line between centres that are nearer than this, times the sum of the radii, is no candidate.
 constexpr double kSameCentre = 1e-9;
 
-/// Whether a point is inside a closed mesh: the solid angle of the mesh, seen from the point, is 4 pi (van
-/// Oosterom and Strackee 1983). Two cheap tests exclude most outside points first.
+/// Whether a point is inside a closed mesh. Seen from an inside point, the solid angle of the mesh is 4 pi;
+/// from an outside point it is 0 (van Oosterom and Strackee 1983). Two cheap tests exclude most outside
+/// points first.
 bool mesh_contains(const PlacedMesh& m, const Vec3<double>& x) {
   if (!m.box.contains(x)) return false;
   const Vec3<double> outward = x - m.box.center();

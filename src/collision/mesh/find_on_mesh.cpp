@@ -13,7 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// Largest distance of the surface from its sample points, in sizes of the part.
+/// Largest distance of the surface from its sample points, in sizes of the part (Part::size(), its largest
+/// half extent).
 constexpr double kSag = 0.02;
 /// Largest distance of a low point from the sample point that its search started from, in sizes.
 constexpr double kSpacing = 0.4;
@@ -24,14 +25,15 @@ constexpr double kInsideTolerance = 1e-6;
 /// A face does not support a point whose distance to another face is less than kNearerShare times its depth,
 /// if the cosine between their normals is above kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
-/// Largest angle, as a sine, by which the normal at a ridge may be outside the range of normals of its faces.
+/// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
+/// of the faces that meet there.
 constexpr double kMaxOutsideSine = 1e-3;
 /// Points along a ridge whose heights differ by at most this, in sizes, are equally low.
 constexpr double kLevelAlongRidge = 3e-6;
 /// Step for the one-sided slopes at a point of a ridge, in sizes.
 constexpr double kSideStep = 1e-7;
 /// Where a part is level along a ridge, its two contacts are this far inside the ends of the level range, in
-/// sizes, where the height is still that of the whole range.
+/// sizes, where the height is still that of the range.
 constexpr double kInset = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
@@ -91,7 +93,8 @@ class Search {
     const VecX<double> heights = (p.transpose() * n).array() + offset;
     const double lowest = heights.minCoeff();
     if (lowest > max_gap_ + kSag * size_ || lowest < min_gap_ - kSag * size_) return;
-    Eigen::AlignedBox3d low_box, face_box;  // the low points may be on this face if these are near each other
+    Eigen::AlignedBox3d low_box,
+        face_box;  // a lowest point can be on the face only if these boxes are near each other
     for (Eigen::Index i = 0; i < heights.size(); ++i)
       if (heights[i] <= lowest + kSag * size_) low_box.extend(a_.c + a_.R * p.col(i));
     for (const int t : near_.triangles)
@@ -161,8 +164,8 @@ class Search {
     return contact;
   }
 
-  // Above 60 lines: after the closed form for ellipsoids, the steps of the search along the edge share its
-  // parametrisation and the range inside the box.
+  // Longer than 60 lines, because the stages of the search along the edge share the parametrisation of the
+  // edge and its range inside the box.
   void search_edge(const ObstacleMesh::Edge& edge) {
     const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]),
                        edge_vector = mesh_.vertices().col(edge.vertex[1]) - start;
@@ -219,7 +222,7 @@ class Search {
     Vec3<double> gradient = slope(x(lowest));
     if (down < 0 && up > 0) gradient = (up * before - down * after) / (up - down);
     if (std::abs(gradient.dot(e)) > kMaxOutsideSine * gradient.norm())
-      return;  // the minimum is beyond the end
+      return;  // the minimum is beyond an end of the edge
     if (!mesh_.points_outward(edge, -gradient.normalized(), kMaxOutsideSine)) return;
     const std::optional<Contact> deepest = contact_at(x(lowest), gradient);
     if (!deepest) return;

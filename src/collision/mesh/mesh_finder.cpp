@@ -16,8 +16,8 @@ namespace pliant {
 namespace {
 
 /// Largest depth of a vertex behind an obstacle, as a share of the thickness of the part. A deeper vertex may
-/// be on the far side of the part, over a plate that supports it. The motion in a step is limited to
-/// kMaxStepShare.
+/// be on the far side of the part, over a plate that supports the part. The motion of a part near an obstacle
+/// in a step is limited to kMaxStepShare of its thickness.
 constexpr double kMaxDepthInObstacle = 0.25, kMaxStepShare = 0.2;
 
 }  // namespace
@@ -98,7 +98,7 @@ PlacedMesh MeshFinder::place(const State& state, double t, const BoundingBall& b
   return placed(ball.p.cols() > 0 ? ball.p : mesh.positions(*model_, state, ball.part));
 }
 
-/// Velocity of a point of a part by its prescribed motion, m/s, world.
+/// Velocity of a point x (m, world) of a part by its prescribed motion, m/s, world.
 Vec3<double> MeshFinder::frame_velocity(int part, double t, const Vec3<double>& x) const {
   const PrescribedMotion* motion = model_->parts()[at(part)].motion;
   if (motion == nullptr) return Vec3<double>::Zero();
@@ -123,9 +123,9 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
   return side;
 }
 
-// Above 60 lines: planes, obstacles and pairs share the placed meshes.
+// Longer than 60 lines, because planes, obstacles and pairs share the placed meshes.
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
-  // A mesh is placed at its first use. Bounding balls exclude most pairs without it.
+  // A mesh is placed in the world at its first use, because the bounding balls exclude most pairs.
   const std::map<int, BoundingBall> balls = this->balls(state, t);
   std::map<int, PlacedMesh> placed;
   auto mesh_of = [&](int part) -> const PlacedMesh& {
@@ -200,14 +200,15 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   });
 }
 
-// Above 60 lines: the bounds of the motion are computed once and used for planes, obstacles and pairs.
+// Longer than 60 lines, because the bounds of the motion are computed once and used for planes, obstacles and
+// pairs.
 void MeshFinder::approach(const State& state, const State* after, double t, double h, double reach,
                           ContactFinder::Neighbourhood& near) const {
   struct Swept {
     int part;
     Vec3<double> c;
     double travel;         // bound of the motion of any point at the velocities of the start, m, world
-    double travel_change;  // and of its change by the change of these velocities, m
+    double travel_change;  // bound of the additional motion by the change of these velocities, m
     Vec3<double> fall;     // displacement by gravity, m
     double reach;          // radius of a ball about c, including the motion, m
   };

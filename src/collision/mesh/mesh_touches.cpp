@@ -14,18 +14,18 @@ namespace pliant {
 
 namespace {
 
-/// Largest depth of two crossing edges, as a share of the shorter one; for deeper overlaps vertices are
-/// inside.
+/// Largest depth of two crossing edges, as a share of the length of the shorter edge. In deeper overlaps a
+/// vertex is inside the other mesh and gives the contact.
 constexpr double kEdgeDepth = 0.5;
 /// Edges are parallel if the sine of the angle between them is below this.
 constexpr double kParallel = 1e-9;
 /// Distances to two triangles whose squares differ by less than this share are equal: the nearest point is on
 /// a common edge or corner.
 constexpr double kTie = 1e-9;
-/// A triangle is straight above a point if the squared distances to the triangle and to its plane agree to
-/// this share.
+/// A point is straight behind a triangle if its squared distances to the triangle and to the plane of the
+/// triangle agree to this share.
 constexpr double kStraightAbove = 1e-6;
-/// Edges with a smaller angle (rad) between the normals of their triangles are not sharp.
+/// An edge is not sharp if the sine of the angle between the normals of its triangles is at most this.
 constexpr double kNoTurn = 1e-6;
 /// The box of a part is enlarged by this share of the largest depth for the search of triangles of an
 /// obstacle.
@@ -35,7 +35,8 @@ constexpr double kOutwardSine = 1e-3;
 /// The triangles of a ridge are the two sides of a plate if the cosine of their normals is below this.
 constexpr double kBackToBack = -0.999999;
 
-/// Returns the weights of the corners in the point of a triangle that is nearest to x.
+/// Returns the point of a triangle that is nearest to x, as weights of the corners p0, p1, p2; their sum
+/// is 1.
 Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, const Vec3<double>& p1,
                              const Vec3<double>& p2) {
   const Vec3<double> e1 = p1 - p0, e2 = p2 - p0, d = x - p0;
@@ -90,8 +91,9 @@ Candidates::Face face_of(const Eigen::Vector3i& corner, const Eigen::Matrix3Xd& 
   return {corner, p0, p1, p2, normal, centre, radius};
 }
 
-/// Returns the vertices, edges and faces of a mesh that meet a box and whose height is at least min_height.
-/// height: one entry for each vertex.
+/// Returns the vertices, edges and faces of a mesh that meet a box and reach the height min_height (m).
+/// height: the coordinate of each vertex along a direction towards the other mesh, m. Border edges are
+/// excluded.
 Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const VecX<double>& height,
                       double min_height) {
   Candidates chosen;
@@ -119,7 +121,7 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
   return chosen;
 }
 
-/// Removes those whose height is below min_height.
+/// Removes the candidates that are entirely below min_height.
 void keep_above(Candidates& chosen, const PlacedMesh& m, const VecX<double>& height, double min_height) {
   auto keep = [](auto& all, auto&& top) {
     all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return !top(one); }), all.end());
@@ -133,7 +135,7 @@ void keep_above(Candidates& chosen, const PlacedMesh& m, const VecX<double>& hei
        [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= min_height; });
 }
 
-/// Returns the convex edges among some edges of a mesh.
+/// Returns the convex edges among some edges of a mesh. edges: numbers of edges of the mesh.
 std::vector<SharpEdge> sharp_edges(const PlacedMesh& m, const std::vector<int>& edges) {
   std::vector<SharpEdge> sharp;
   for (const int k : edges) {
@@ -148,7 +150,7 @@ std::vector<SharpEdge> sharp_edges(const PlacedMesh& m, const std::vector<int>& 
 /// The face that is nearest to a point.
 struct NearestFace {
   const Candidates::Face* face = nullptr;
-  Vec3<double> weight = Vec3<double>::Zero();               ///< of the corners in the nearest point
+  Vec3<double> weight = Vec3<double>::Zero();               ///< weights of its corners in the nearest point
   double square = std::numeric_limits<double>::infinity();  ///< squared distance, m^2
   double gap = 0;                                           ///< height over the plane of the face, m
 
@@ -157,7 +159,7 @@ struct NearestFace {
   bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraightAbove); }
 };
 
-/// Finds the nearest of some faces.
+/// Finds the face that is nearest to a point, among some faces.
 class NearestOf {
  public:
   /// faces: must outlive this object.
@@ -167,7 +169,8 @@ class NearestOf {
       centres_.row(k) = faces[static_cast<std::size_t>(k)].centre.transpose();
   }
 
-  /// Returns the nearest to x of the faces for which is_candidate(face) is true.
+  /// Returns the face nearest to x among the faces for which is_candidate(face) is true; without a face if
+  /// none is.
   template <class F>
   NearestFace operator()(const Vec3<double>& x, F&& is_candidate) {
     NearestFace best;
@@ -207,12 +210,13 @@ class NearestOf {
  private:
   const std::vector<Candidates::Face>& faces_;
   Eigen::Array<double, Eigen::Dynamic, 3> centres_;
-  Eigen::ArrayXd squared_distances_;  // squared distances of the centres
+  Eigen::ArrayXd squared_distances_;  // from the centres of the faces to x, m^2
 };
 
-/// Appends the overlaps of vertices of one mesh that are behind faces of the other. all: the faces are all
-/// faces of the other mesh near it, so that a vertex that is not straight behind its nearest face, as in a
-/// dent, is inside too. one_is_a: whether `one` is side a of the result.
+/// Appends the overlaps of vertices of one mesh that are behind faces of the other mesh. one: all vertices of
+/// the first mesh. all: whether `faces` has all faces of the other mesh nearby; then a vertex that is behind
+/// its nearest face but not straight behind it, as in a dent, is inside too. one_is_a: whether `one` is side
+/// a of the result.
 void add_vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
                          const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
                          std::vector<MeshTouch>& found) {
@@ -242,9 +246,9 @@ void add_vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& ve
   }
 }
 
-/// Appends the overlaps of edges of a and b that have passed through each other. For convex edges these are
-/// the pairs whose arcs of normals, those of b reversed, cross on the unit sphere (a face of the Minkowski
-/// difference).
+/// Appends the overlaps of convex edges of a and b that have passed through each other. Each edge has an arc
+/// of normals on the unit sphere. Two edges form a face of the Minkowski difference if the arc of a crosses
+/// the reversed arc of b; only such pairs are tested.
 void add_crossing_edges(const std::vector<SharpEdge>& of_a, const std::vector<SharpEdge>& of_b,
                         std::vector<MeshTouch>& found) {
   for (const SharpEdge& e : of_a)
@@ -260,7 +264,7 @@ void add_crossing_edges(const std::vector<SharpEdge>& of_a, const std::vector<Sh
       const Vec3<double> d = e.p - f.p;
       const double gap = normal.dot(d);
       if (!(gap < 0 && gap > -kEdgeDepth * std::min(length_a, length_b))) continue;
-      // The feet of the common perpendicular.
+      // The feet of the common perpendicular are e.p + s e.along and f.p + u f.along.
       const double aa = length_a * length_a, ab = e.along.dot(f.along), bb = length_b * length_b,
                    det = aa * bb - ab * ab, ad = e.along.dot(d), bd = f.along.dot(d);
       const double s = (ab * bd - bb * ad) / det, u = (aa * bd - ab * ad) / det;
@@ -277,8 +281,8 @@ void add_crossing_edges(const std::vector<SharpEdge>& of_a, const std::vector<Sh
     }
 }
 
-/// Whether a point of a triangle, given by its weights, is on an edge or a corner without a sharp edge.
-/// Behind such an edge or corner there are points that are straight behind no triangle.
+/// Whether a point of a triangle, given by its weights, is on an edge that is not sharp or at a corner
+/// without sharp edges. A point behind such an edge or corner may be straight behind no triangle.
 bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weight) {
   std::array<int, 3> on{};
   std::size_t n = 0;
@@ -291,7 +295,8 @@ bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weigh
 }
 
 /// Appends the overlaps of vertices of a that are behind triangles whose normals oppose the outward direction
-/// of the vertex. For a plate these are the vertices on the other side of the plate from the centre of a.
+/// of the vertex. The outward direction is the sum of the area normals of the triangles of a at the vertex.
+/// For a plate these vertices and the centre of a are on opposite sides of the plate.
 void add_vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
                          std::vector<MeshTouch>& found) {
   std::vector<Candidates::Face> faces;
@@ -345,9 +350,9 @@ struct SharpElements {
   std::vector<SharpEdge> edges;
 };
 
-/// Returns the sharp edges of some triangles of an obstacle, and their vertices. The second normal of a
-/// border edge points sideways. The edge of a plate is entered twice: from front to side, and from side to
-/// back.
+/// Returns the sharp edges of some triangles of an obstacle, and the vertices of these edges. The second
+/// normal of a border edge is in the plane of the triangle and points away from it. An edge of a plate is
+/// entered twice: with the normals of the front and the side, and with those of the side and the back.
 SharpElements sharp_elements(const ObstacleMesh& m, const std::vector<int>& triangles) {
   SharpElements sharp;
   std::vector<int> edges;
@@ -388,8 +393,8 @@ PlacedMesh::PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at)
 
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found) {
   if (!a.box.intersects(b.box)) return;
-  // A vertex of a that is before all of b along a direction does not overlap b, and the reverse; any
-  // direction gives a valid bound.
+  // Along any direction, a vertex of a that is before all vertices of b does not overlap b. A vertex of b
+  // that is beyond all vertices of a does not overlap a.
   Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
   VecX<double> along_a = a.x.transpose() * towards, along_b = -(b.x.transpose() * towards);
   double end_of_a = along_a.maxCoeff(), start_of_b = -along_b.maxCoeff();

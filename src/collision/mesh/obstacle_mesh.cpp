@@ -17,8 +17,8 @@ namespace {
 /// A triangle whose height is below this share of its longest edge has no area; vertices of files are often
 /// in single precision.
 constexpr double kNoHeight = 1e-7;
-/// Triangles are in one plane if their vertices are nearer to it than kSamePlane, in diagonals of the mesh,
-/// and their normals differ by at most kOnePlaneNormal.
+/// Triangles are in one plane if their vertices are at most kSamePlane from the plane, in diagonals of the
+/// box of the mesh, and their normals differ by at most kOnePlaneNormal.
 constexpr double kSamePlane = 4e-7, kOnePlaneNormal = 1e-4;
 constexpr int kTrianglesInLeaf = 4;
 
@@ -89,7 +89,7 @@ void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi
 }
 
 void ObstacleMesh::build_edges() {
-  std::map<std::pair<int, int>, int> number;  // by vertices, the smaller number first
+  std::map<std::pair<int, int>, int> number;  // edge number by its two vertices, the smaller first
   edges_of_.resize(at(static_cast<int>(triangles_.cols())));
   for (int t = 0; t < triangles_.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -170,7 +170,7 @@ void ObstacleMesh::mark_sharp() {
     if (edge.triangle[1] < 0) continue;
     const Vec3<double> n = normal(edge.triangle[0]), m = normal(edge.triangle[1]);
     const double sine = n.cross(m).dot(along(edge));
-    // The two sides of a plate coincide; their common edge is a ridge too.
+    // The two sides of a plate coincide; an edge between them is a ridge too.
     edge.sharp = face_of_[at(edge.triangle[0])] != face_of_[at(edge.triangle[1])] &&
                  (sine > 0 || (n.dot(m) < 0 && sine > -kOnePlaneNormal));
   }

@@ -72,9 +72,8 @@ std::string counted(std::size_t n, const char* noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-/// Returns whether a text is clearly not JSON and therefore a string whose quotes the shell has removed, as
-/// in
-/// --set /name=arm or --set /force=2*t.
+/// Returns whether a text is clearly not JSON. It is then a string without quotes, for example the value of
+/// --set /name=arm or of --set /force=2*t.
 bool is_bare_text(std::string_view text) {
   if (text.empty() || text == "true" || text == "false" || text == "null") return false;
   if (std::string_view("{[\"").find(text[0]) != std::string_view::npos) return false;

@@ -10,7 +10,7 @@ namespace pliant::json {
 
 /// A fault of the text.
 struct Fault {
-  std::size_t offset;  ///< byte
+  std::size_t offset;  ///< byte offset in the text
   std::string pointer;
   std::string message;
 };

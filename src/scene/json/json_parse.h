@@ -1,6 +1,6 @@
-// From text to values, with the event parser of nlohmann-json. Its events contain no places. It reports
-// checked tokens in the order of the text, so a cursor that moves from token to token finds the place of
-// each.
+// From text to values, with the event parser of nlohmann-json. The events contain no places. But the parser
+// reports tokens in the order of the text, so that a cursor that moves from token to token finds the place of
+// each token.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace pliant::json {
 
 struct ParseOptions {
   std::uint32_t source = 0;                       ///< JsonPlace::source of the values
-  int depth = 0;                                  ///< nesting depth of the place of the text
+  int depth = 0;                                  ///< nesting depth at which the value will be inserted
   std::function<std::string(std::size_t)> place;  ///< converts an offset to words, for messages
   std::function<void(const Fault&)> report;       ///< receives faults that do not end the parsing
 };

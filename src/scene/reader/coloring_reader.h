@@ -15,7 +15,7 @@ namespace pliant {
 
 schema::Record coloring_record();
 
-/// Reads the coloring of a scene. coloring: a complete object of coloring_record(). parts: by name.
+/// Reads the coloring of a scene. coloring: a complete object of coloring_record(). parts: the parts by name.
 Coloring read_coloring(const Reader& coloring, const std::map<std::string, NamedPart>& parts,
                        SceneFaults& faults);
 

@@ -27,7 +27,7 @@ schema::Record plane_record(const schema::Type& color) {
   return {
       "plane",
       "An impenetrable half space behind a plane.",
-      {required("name", name(), "Name that no part has.", "\"floor\""),
+      {required("name", name(), "Name that no part or other plane has.", "\"floor\""),
        optional("point", time_vector("m"), "A point of the plane; it may move in time.", "[0, 0, 0]"),
        optional("normal", vector3("1"), "Normal, pointing out of the half space.", "[0, 0, 1]"),
        optional("on", number(at_least(0), "s"), "Time at which the plane appears.", "0"),
@@ -42,9 +42,10 @@ schema::Record pair_record() {
   return {
       "pair",
       "Contact of two parts, or of a part and a plane or an obstacle. A group stands for all its members.",
-      {required("between", array(name(), 2, 2), "Two names of things or groups.", "[\"ball\", \"floor\"]"),
+      {required("between", array(name(), 2, 2), "Two names of parts, planes, obstacles or groups.",
+                "[\"ball\", \"floor\"]"),
        optional("touch", boolean(),
-                "Whether they touch. Parts tied by a joint touch only where a pair names both.", "true"),
+                "Whether the two touch. Parts tied by a joint touch only if a pair names both.", "true"),
        optional("friction", number(at_least(0), "1"),
                 "Coulomb's coefficient of this pair; when absent, that of \"contact\"."),
        optional("restitution", number(between(0, 1), "1"),
@@ -53,12 +54,11 @@ schema::Record pair_record() {
 
 schema::Record sleep_record() {
   using namespace schema;
-  return {
-      "sleep",
-      "Sleep of bodies at rest: they and all bodies that they touch or are tied to keep their state until "
-      "something touches or drives them.",
-      {required("speed", number(above(0), "m/s"), "Largest speed of a point of a body at rest.", "0.001"),
-       optional("after", number(above(0), "s"), "Time at rest after which a body sleeps.", "0.5")}};
+  return {"sleep",
+          "Sleep of bodies at rest. A sleeping body, and all bodies that it touches or is tied to, keep "
+          "their state until something touches or drives one of them.",
+          {required("speed", number(above(0), "m/s"), "Largest speed of a point of a body at rest.", "0.001"),
+           optional("after", number(above(0), "s"), "Time at rest after which a body sleeps.", "0.5")}};
 }
 
 }  // namespace
@@ -73,9 +73,9 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
                 "Ratio of the normal speed after an impact to the speed before it.", "0"),
        optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
        optional("longest_step", number(above(0), "s"),
-                "Longest step of error control while a force acts or while many bodies, or locally deformed "
-                "ones, rest on each other (the error of these contacts is not controlled). For tolerances "
-                "above 5e-4 the longest step grows in proportion, up to ten times.",
+                "Longest step with a \"tolerance\" in lasting contact, if a force acts, more than eight "
+                "bodies move or a body deforms locally. The error of these contacts is not controlled. For "
+                "tolerances above 5e-4 the longest step grows in proportion, up to ten times.",
                 "0.002"),
        optional("sleep", record(sleep_record()), "Sleep of bodies at rest; when absent, no body sleeps."),
        optional("planes", array(record(plane_record(color))), "Impenetrable planes.", "[]"),
@@ -128,7 +128,8 @@ bool are_known(const JsonValue& list, const char* kind, const std::vector<std::s
   return all;
 }
 
-/// Reads the groups into the settings and appends their names to `names`, the names of all things.
+/// Reads the groups into the settings. names: the names of all parts, planes and obstacles; the names of the
+/// groups are appended.
 void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFaults& faults,
                  ContactSettings& settings) {
   if (!contact.given("groups")) return;

@@ -17,8 +17,8 @@ namespace pliant {
 
 schema::Record contact_record(const schema::Type& orientation, const schema::Type& color);
 
-/// Reads the contact settings into the scene. contact: an object of contact_record(). parts: by name. folder:
-/// of the mesh files.
+/// Reads the contact settings into the scene. contact: an object of contact_record(). parts: the parts by
+/// name. folder: the folder of the mesh files.
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
                   const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene);
 

@@ -11,12 +11,12 @@
 
 namespace pliant {
 
-/// Returns the solver with this name in the schema.
+/// Returns the solver for joint forces with this name in the schema.
 JointSolver::Choice joint_solver(const std::string& name);
 
 Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
-/// Reads a joint and adds it to the body; faults are reported.
+/// Reads a joint and adds it to the MultiBody; faults are reported.
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
 
 }  // namespace pliant

@@ -18,11 +18,11 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
   Record obstacle{
       "obstacle",
       "An immobile triangle mesh or plate.",
-      {required("name", name(), "Name that no part or plane has.", "\"bowl\""),
-       optional(
-           "mesh", text(1),
-           "Surface mesh: a file .obj, .ply, .stl, .gltf or .glb, relative to the folder of the scene. "
-           "Triangles are counter-clockwise seen from the free side. Bodies pass an open mesh from behind."),
+      {required("name", name(), "Name that no part, plane or other obstacle has.", "\"bowl\""),
+       optional("mesh", text(1),
+                "Surface mesh: a file .obj, .ply, .stl, .gltf or .glb, relative to the folder of the scene. "
+                "Triangles are counter-clockwise seen from the free side. A body that comes from behind "
+                "passes through an open mesh."),
        optional("half_extents", array(number(above(0), "m"), 2, 2),
                 "Instead of a mesh: half extents along x and y of a rectangle normal to z, solid from both "
                 "sides."),

@@ -19,6 +19,7 @@ struct MeshFolder {
   bool of_a_run = false;  ///< whether the files have the names that a run gives them (recorded_mesh_name)
 };
 
+/// Returns the record of an obstacle. orientation, color: types of the keys of these names.
 schema::Record obstacle_record(const schema::Type& orientation, const schema::Type& color);
 
 /// Reads an obstacle and adds it to the scene; faults are reported. taken: names of parts, planes and other

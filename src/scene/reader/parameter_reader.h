@@ -1,5 +1,5 @@
-// Reading the global parameters of a part: rest values, limits and initial values. Each is checked against
-// the range of the parameter, and a fault is reported at its place.
+// Reading the global parameters of a part: rest values, limits and initial values. Each value is checked
+// against the range of the parameter, and a fault is reported at the value.
 #pragma once
 
 #include <string>

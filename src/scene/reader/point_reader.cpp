@@ -17,8 +17,8 @@ constexpr double kAngleRounding = 1e-4;
 /// Largest w - 1 of a position outside the part that is still projected to the surface.
 constexpr double kFarOutside = 1;
 
-/// Returns the outermost intersection of a ray from the part's origin with its rest shape (m, body frame), or
-/// nothing if the ray does not meet the shape.
+/// Returns the outermost intersection (m, body frame) of the rest shape with a ray from the origin of the
+/// frame, or nothing if the ray does not meet the shape.
 std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
   const Vec3<double> ray = direction.stableNormalized() * part.size();
   auto outside = [&](double t) {
@@ -30,14 +30,15 @@ std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>
     }
   };
   constexpr int steps = 256;
-  constexpr double spacing = 1.75 / steps;  // beyond sqrt(3) times the largest coordinate
+  constexpr double spacing = 1.75 / steps;  // in sizes of the part; no point is farther than sqrt(3) sizes
   std::array<double, steps + 1> sample{};
   for (int i = 0; i <= steps; ++i) sample[static_cast<std::size_t>(i)] = outside(spacing * i);
   for (int i = steps - 1; i >= 0; --i) {
     double in = spacing * i, out = spacing * (i + 1);
     const auto at = static_cast<std::size_t>(i);
     if (!(sample[at] < 0)) {
-      // A body thinner than the spacing can only be at a minimum of the samples: golden section search.
+      // Between outside samples, a body thinner than the spacing can only be near a minimum: golden section
+      // search.
       if (i == 0 || sample[at] > sample[at - 1] || sample[at] > sample[at + 1]) continue;
       constexpr double golden = 0.6180339887498949;
       double low = spacing * (i - 1), high = out;

@@ -1,5 +1,5 @@
-// Reading points of a scene, on parts or of the world. Names are resolved to parts and places to material
-// points.
+// Reading points of a scene, on parts or of the world. Part names are resolved to parts, and directions and
+// positions to material points.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct NamedPart {
 
 class PointReader {
  public:
-  /// parts: by name. end: end of the run, s.
+  /// parts: the parts by name. end: end of the run, s.
   PointReader(const std::map<std::string, NamedPart>& parts, double end, SceneFaults& faults)
       : parts_(parts), times_(end, faults), faults_(faults) {}
 

@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// Quantities that a user of a function of time evaluates.
+/// The quantities of a function of time that must be finite.
 enum class Needs { value, value_and_rate };
 
 class TimeReader {
@@ -21,8 +21,8 @@ class TimeReader {
 
   /// End of the run, s.
   double end() const { return end_; }
-  /// Returns the function of a sound value. Reports a fault and returns nothing if it is not finite at one of
-  /// 257 times from 0 to the end.
+  /// Returns the function that a validated value describes. Reports a fault and returns nothing if the
+  /// function is not finite at one of 257 times from 0 to the end.
   std::optional<TimeFunction> function(const JsonValue& value, Needs needs) const;
   /// Returns the three functions under a key, or nothing if one is faulty; each fault is reported.
   std::optional<TimeVector> vector(const Reader& r, const char* key, Needs needs) const;

@@ -29,12 +29,12 @@ Type joint_type(const Type& end_point, const Type& orientation) {
                                    "Length; when absent, the distance of the two points at time 0."));
     add(JointKey::axis,
         optional("axis", vector3("1"),
-                 "Direction at \"to\", in the frame of its undeformed part or of the world.", "[0, 0, 1]"));
+                 "Direction at \"to\", in the frame of the undeformed part at \"to\", or of the world.",
+                 "[0, 0, 1]"));
     add(JointKey::from_axis,
-        optional(
-            "from_axis", vector3("1"),
-            "Direction at \"from\", in the frame of its undeformed part or of the world. When absent, it is "
-            "parallel to \"axis\" in the pose of time 0, with undeformed parts."));
+        optional("from_axis", vector3("1"),
+                 "Direction at \"from\", in the frame of the undeformed part at \"from\", or of the world. "
+                 "When absent, it is parallel to \"axis\" in the pose of time 0, with undeformed parts."));
     add(JointKey::rotation,
         optional(
             "rotation", orientation,
@@ -65,7 +65,7 @@ Record stabilization_record() {
        optional("rate", number(above(0), "1/s"), "Decay rate of a gap.", "10"),
        optional("stab_alpha", number(at_least(0), "1/s"), "alpha of the rule \"free\".", "0"),
        optional("stab_beta", number(at_least(0), "1/s"),
-                "beta of the rule \"free\"; it must be above 0 there, or no gap closes.", "0"),
+                "beta of the rule \"free\", which needs a value above 0; otherwise no gap closes.", "0"),
        optional("speed", number(above(0), "1"),
                 "Largest closing speed of a gap, in units of rate times the size of the smaller part.", "3"),
        optional(

@@ -6,7 +6,8 @@
 
 namespace pliant {
 
-/// Returns the type of a joint, tagged by "type".
+/// Returns the type of a joint, tagged by "type". end_point, orientation: types of the keys "from", "to" and
+/// "rotation".
 schema::Type joint_type(const schema::Type& end_point, const schema::Type& orientation);
 schema::Record stabilization_record();
 

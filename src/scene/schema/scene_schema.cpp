@@ -30,8 +30,7 @@ std::vector<Choice> deformation_choices() {
 }
 std::vector<Choice> integrator_choices() {
   std::vector<Choice> all{
-      {kAutomatic,
-       "chosen by trial: the method that integrates farthest at equal cost, for a \"tolerance\""}};
+      {kAutomatic, "chosen by trial for a \"tolerance\": the method that advances farthest at equal cost"}};
   for (const IntegratorInfo& info : all_integrators()) all.push_back({info.name, info.description});
   return all;
 }
@@ -134,13 +133,13 @@ Record part_record() {
       "part", "A deformable solid primitive.",
       {required("name", name(), "Name, unique in the scene.", "\"ball\""),
        required("shape", choice(shape_choices()), "The solid primitive e(u; a).", "\"superellipsoid\""),
-       optional(
-           "deformations", array(choice(deformation_choices()), 0, 16),
-           "Global deformations T, applied in this order. A type may be repeated; its parameters are then "
-           "taper, taper2, ...",
-           "[]"),
+       optional("deformations", array(choice(deformation_choices()), 0, 16),
+                "Global deformations T, applied in this order. A type may be repeated; the names of the "
+                "parameters then begin with taper, taper2, ...",
+                "[]"),
        optional("parameters", map(parameter_type()),
-                "Global parameters by name: those of the shape, then link.parameter. See `pliant list`.",
+                "Global parameters by name: a1 is one of the shape, taper.tx one of a deformation. See "
+                "`pliant list`.",
                 "{}"),
        optional("stiffness_matrix", record(stiffness_matrix_record()),
                 "A full stiffness matrix K_s of several parameters."),
@@ -169,22 +168,22 @@ Record part_record() {
 }
 
 Record time_record() {
-  return {
-      "time",
-      "Duration of the run and method of time integration.",
-      {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
-       optional("step", number(above(0), "s"), "Fixed time step.", "0.001"),
-       optional("integrator", choice(integrator_choices()), "Method of time integration.",
-                "\"semi_implicit_euler\""),
-       optional("tolerance", number(between(kLeastTolerance, kGreatestTolerance), "1"),
-                "Bound on the error of a step, which then controls the step length. The error is relative to "
-                "the size of each part, or in radians; rates are measured accordingly. When absent, all "
-                "steps have the length \"step\"."),
-       optional("solver",
-                choice({{"auto", "chosen for each island of parts by a fixed cost model"},
-                        {"blocks", "blocks of C_q M^-1 C_q^T"},
-                        {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
-                "Method for the constraint forces of joints.", "\"auto\"")}};
+  return {"time",
+          "Duration of the run and method of time integration.",
+          {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
+           optional("step", number(above(0), "s"), "Fixed time step.", "0.001"),
+           optional("integrator", choice(integrator_choices()), "Method of time integration.",
+                    "\"semi_implicit_euler\""),
+           optional("tolerance", number(between(kLeastTolerance, kGreatestTolerance), "1"),
+                    "Bound on the error of a step, which then controls the step length. Its unit is the size "
+                    "of the part for lengths and the radian for angles; for rates it is this unit per "
+                    "second, or per a shorter time scale of the part. When absent, all "
+                    "steps have the length \"step\"."),
+           optional("solver",
+                    choice({{"auto", "chosen for each island of parts by a fixed cost model"},
+                            {"blocks", "blocks of C_q M^-1 C_q^T"},
+                            {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
+                    "Method for the constraint forces of joints.", "\"auto\"")}};
 }
 
 Record spring_record() {
@@ -246,10 +245,11 @@ Record output_record() {
        optional("every_part", boolean(),
                 "Whether trajectory.csv has columns for every part and joint, in addition to tracks and "
                 "totals. When absent, it has them in scenes of at most 100 parts."),
-       optional("contacts", boolean(),
-                "Whether contacts.csv and joint_impulses.csv are written: contacts of the last step before "
-                "each recorded state with their impulses, and the impulses of joints that balance them.",
-                "false")}};
+       optional(
+           "contacts", boolean(),
+           "Whether contacts.csv and joint_impulses.csv are written. They list the contacts of the last step "
+           "before each recorded state with their impulses, and the joint impulses that balance these.",
+           "false")}};
 }
 
 Record camera_record() {

@@ -27,7 +27,7 @@ class ContactMesh {
   const std::vector<Material<double>>& material() const { return material_; }
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
-  /// Computes the vertices in the body frame, m. number: of the part.
+  /// Computes the vertices: one column for each, body frame, m. number: number of the part.
   Eigen::Matrix3Xd positions(const Model& model, const State& state, int number) const;
   /// Radius of a ball about the origin of the part's frame that contains the part, m. For a part without
   /// nodes and with dynamic parameters it is estimated from few points.
@@ -43,12 +43,16 @@ class ContactMesh {
   std::vector<Edge> edges_;
   std::vector<int> nodes_;
   std::vector<Material<double>> material_;
-  std::vector<Material<double>> coarse_;  // part without nodes, with dynamic parameters: points for reach()
-  Eigen::Matrix3Xd rigid_;                // vertices of a part of constant shape
-  double rigid_reach_ = 0;                // and the largest distance of one of them from the origin
-  mutable Eigen::Matrix3Xd last_;         // vertices of a part without nodes, with dynamic parameters, at the
-  mutable VecX<double> last_q_s_;         // last call of positions(), and the parameters of that call
-  Eigen::Matrix3Xd rest_;  // vertices of a part that changes by local deformation alone, without it
+  std::vector<Material<double>>
+      coarse_;              // points for reach() of a part without nodes, with dynamic parameters
+  Eigen::Matrix3Xd rigid_;  // vertices of a part of constant shape
+  double rigid_reach_ = 0;  // largest distance of such a vertex from the origin of the frame, m
+  // Result of the last call of positions() for a part without nodes, with dynamic parameters; and q_s of that
+  // call.
+  mutable Eigen::Matrix3Xd last_;
+  mutable VecX<double> last_q_s_;
+  Eigen::Matrix3Xd
+      rest_;  // vertices at d = 0 of a part with local deformation and without dynamic parameters
   double thickness_;
 };
 

@@ -1,7 +1,7 @@
-// Contacts of a part without local deformation with an obstacle mesh. On a flat face of the mesh they are the
-// low points of the part, as over a plane. On a ridge or at a corner the contact is the point of the mesh
-// that is deepest inside the part, if the normal of the part there is between the normals of the faces that
-// meet. Thus edges inside a flat floor have no effect, and a ball rolls over a ridge smoothly.
+// Contacts of a part without local deformation with an obstacle mesh. On a flat face of the mesh the contacts
+// are the lowest points of the part, as over a plane. On a ridge or at a corner the contact is the point of
+// the mesh that is deepest inside the part, if the normal of the part there is between the normals of the
+// faces that meet. Thus edges inside a flat floor have no effect, and a ball rolls over a ridge smoothly.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct PlacedSurface {
   const ParameterValues<double>& values;
   const Vec3<double>& c;                    ///< origin of the frame, m, world
   const Mat3<double>& R;                    ///< body to world
-  const std::optional<Vec3<double>>& axes;  ///< semi-axes of an ellipsoid, m
+  const std::optional<Vec3<double>>& axes;  ///< semi-axes if the part is an ellipsoid, m
   Eigen::AlignedBox3d box;                  ///< contains the part, world
   /// Returns the sample points of the surface, body frame, m; not called for ellipsoids.
   std::function<const Eigen::Matrix3Xd&()> points;
@@ -32,8 +32,8 @@ struct MeshSearch {
   std::vector<int> triangles, faces, edges, vertices;
 };
 
-/// Appends the contacts whose gap is at most max_gap (m). Sets the material of side a, x, normal and gap; the
-/// caller sets the rest.
+/// Appends the contacts whose gap is at most max_gap (m). Sets a.material, x, normal and gap of each contact;
+/// the caller sets the other members.
 void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double max_gap, MeshSearch& search,
                   std::vector<Contact>& found);
 

@@ -23,8 +23,9 @@ class MeshFinder {
   bool empty() const { return meshes_.empty(); }
   /// Appends the contacts of surfaces that overlap at a state and a time t (s).
   void find(const State& state, double t, std::vector<Contact>& found) const;
-  /// Adds to a neighbourhood of a step of h seconds what the parts of this class may touch. after: the end of
-  /// a step that is done; nullptr for a coming step. reach: see ContactFinder::neighbourhood().
+  /// Updates the neighbourhood of a step of h seconds with the parts that deform locally: sets soft and
+  /// empty, and reduces h and spare. after: the state at the end of a step that is done; nullptr for a coming
+  /// step. reach: see ContactFinder::neighbourhood().
   void approach(const State& state, const State* after, double t, double h, double reach,
                 ContactFinder::Neighbourhood& near) const;
 
@@ -53,14 +54,15 @@ class MeshFinder {
                    const Vec3<double>& x) const;
   std::map<int, BoundingBall> balls(const State& state, double t) const;
   PlacedMesh place(const State& state, double t, const BoundingBall& ball) const;
-  /// Calls act(one, other, rule) for each pair of parts that may touch and whose balls meet. all: a map from
-  /// parts to things; one and other are entries of it.
+  /// Calls act(one, other, rule) for each pair of parts that may touch and whose balls meet. all: part number
+  /// -> thing; one and other are entries of this map. A Thing has the members part, c and reach of its ball.
   template <class Thing, class F>
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
   double local_travel(const State& state, double t, const BoundingBall& ball) const;
-  /// Whether the overlap of two parts is deeper than their motion in the last step. touches: the overlaps of
-  /// their meshes. Seven parameters, because the caller has computed the balls and the meshes already.
+  /// Whether two parts overlap more deeply than their motion in the last step can explain, or one contains
+  /// the centre of the other. touches: the overlaps of their meshes. It has seven parameters because the
+  /// caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
   /// Returns one contact that separates two parts in deep overlap.

@@ -28,15 +28,16 @@ struct MeshPoint {
 struct MeshTouch {
   MeshPoint a, b;
   Vec3<double> x;       ///< m, world
-  Vec3<double> normal;  ///< unit vector out of b
+  Vec3<double> normal;  ///< unit vector out of b, world
   double gap;           ///< m, negative
 };
 
-/// Appends the overlaps of two meshes, in an order that depends on the meshes alone.
+/// Appends the overlaps of two meshes. Their order is determined by the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
-/// Appends the overlaps of a mesh with an obstacle; the points of side b are not set for vertices of a.
-/// Vertices that are deeper behind the obstacle than `deepest` (m) are ignored: they came from another side.
-/// Ignored too are vertices whose outward direction agrees with the normal of the triangle.
+/// Appends the overlaps of a mesh with an obstacle. For a vertex of a behind the obstacle, MeshTouch::b is
+/// not set. Overlaps deeper than `deepest` (m) are ignored: the vertex came from another side of the
+/// obstacle. A vertex whose outward direction agrees with the normal of a triangle is not behind that
+/// triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

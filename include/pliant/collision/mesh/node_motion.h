@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Computes the velocities of some nodes of a part: one column for each node, m/s, world.
+/// Computes x_dot, the velocities of some nodes of a part: one column for each entry of `nodes`, m/s, world.
 void node_velocities(const Model& model, const State& state, int part, const std::vector<int>& nodes,
                      Eigen::Matrix3Xd& x_dot);
 

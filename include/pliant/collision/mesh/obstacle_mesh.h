@@ -16,10 +16,10 @@ namespace pliant {
 class ObstacleMesh {
  public:
   /// vertices: m, world. triangles: vertex numbers, counter-clockwise seen from the free side. A part that
-  /// comes from the other side of a triangle passes through it. Throws std::invalid_argument that names the
-  /// element and its position for a vertex that is not finite or in no triangle, a triangle with an unknown
-  /// vertex or without area, and an edge with more than two triangles or with two triangles of opposite
-  /// orientation.
+  /// comes from the other side of a triangle passes through it. Throws std::invalid_argument for a mesh
+  /// without triangles, a vertex that is not finite or in no triangle, a triangle with an unknown vertex or
+  /// without area, and an edge with three triangles or with two triangles of opposite orientation. The
+  /// message names the element and its position.
   ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
 
   struct Edge {
@@ -27,7 +27,7 @@ class ObstacleMesh {
     std::array<int, 2> triangle;  ///< the second one is -1 at the border of an open mesh
     bool sharp;  ///< whether a part outside both faces can touch it: a convex edge or the border
   };
-  /// A set of connected triangles in one plane.
+  /// A set of connected triangles in one plane: a point of the plane (m, world) and its unit normal.
   struct Face {
     Vec3<double> point, normal;
   };
@@ -46,8 +46,8 @@ class ObstacleMesh {
   int face_of(int triangle) const { return face_of_[at(triangle)]; }
   /// Returns the edges that end in a vertex; empty if none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
-  /// Whether a unit vector at an edge or a corner is in the normal cone there, that is, points away from all
-  /// faces that meet there. `sine` is the tolerance, as the sine of an angle.
+  /// Whether a unit vector at an edge or a vertex is in the normal cone there: it points away from all faces
+  /// that meet there. `sine` is the tolerance, as the sine of an angle.
   bool points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const;
   bool points_outward(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether the mesh has no border.

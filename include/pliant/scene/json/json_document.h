@@ -36,10 +36,10 @@ class JsonDocument {
   /// The bytes of the file.
   const std::string& text() const { return sources_[0].text; }
 
-  /// Replaces the value at a JSON pointer by the JSON value in `text`, or adds a key to an object or an
-  /// element to an array ("/-" or the index after the last). Text that is clearly not JSON (arm, 2*t) becomes
-  /// a string. Faults (no such parent, bad value) are added to `faults`; the document is then unchanged.
-  /// References to values become invalid.
+  /// Replaces the value at a JSON pointer by the JSON value in `text`. If there is none, adds a key to an
+  /// object or an element to an array ("/-" or the index after the last one). Text that is clearly not JSON
+  /// (arm, 2*t) becomes a string. Faults (no such parent, bad value) are added to `faults`; the document is
+  /// then unchanged. References to values become invalid.
   void set(const std::string& pointer, const std::string& text, Diagnostics& faults);
   /// Applies one assignment "/pointer=value".
   void set(const std::string& assignment, Diagnostics& faults);
@@ -52,7 +52,7 @@ class JsonDocument {
   /// described.
   std::string shown(const JsonValue& value) const;
 
-  /// Returns a fault at a value, at a key of an object, or inside a string at a byte of its decoded text.
+  /// Return a fault at a value, at a key of an object, or inside a string at a byte of its decoded text.
   Diagnostic fault(const JsonValue& value, std::string message, Severity severity = Severity::kError) const;
   Diagnostic fault_at_key(const JsonValue& object, std::string_view key, std::string message,
                           Severity severity = Severity::kError) const;

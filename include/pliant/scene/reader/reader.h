@@ -1,6 +1,6 @@
-// Access to the validated values of an object by key. The value is that of the file, or else the default that
-// the record declares; a faulty value is treated as absent. The reader repeats no checks. A key that the
-// record does not declare, or that has neither value nor default, is a programming error and throws
+// Access to the validated values of a JSON object by key. A value comes from the file, or else it is the
+// default that the record declares. A faulty value is treated as absent. The reader repeats no checks. A key
+// that the record does not declare, or that has neither value nor default, is a programming error and throws
 // std::logic_error.
 #pragma once
 

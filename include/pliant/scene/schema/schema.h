@@ -72,8 +72,8 @@ struct Type {
   Range range{};                  ///< kNumber, kInteger
   std::string unit{};             ///< kNumber; "1" for a dimensionless number
   std::vector<Choice> choices{};  ///< kChoice
-  std::size_t min_count = 0;      ///< kArray, kMap, kText (characters)
-  std::size_t max_count = std::numeric_limits<std::size_t>::max();
+  std::size_t min_count = 0;      ///< kArray: elements; kText, kName: bytes
+  std::size_t max_count = std::numeric_limits<std::size_t>::max();  ///< kArray: elements; kName: bytes
   std::vector<Type> inner{};  ///< kArray, kMap: the element; kOneOf: the alternatives
   /// kRecord: one record; kTagged: one record per value of the tag, named by that value.
   std::vector<RecordPtr> records{};
@@ -122,7 +122,7 @@ struct Field {
   Type type;
   std::string description;
   bool required = false;
-  /// The value of an absent key. Null if an absent key has a meaning of its own, which the description
+  /// The value of an absent key. It is null if an absent key has a meaning of its own, which the description
   /// states.
   std::shared_ptr<const JsonValue> default_value{};
   std::string default_text{};  ///< the default value as JSON text
@@ -151,9 +151,9 @@ struct Record {
   const Field* find(const std::string& key) const;
 };
 
-/// Returns the alternative of a kOneOf type that fits the keys of an object best: the one that declares most
-/// of them, where a required key outweighs all optional ones; the first one if several are equal. Null if
-/// there are several alternatives and none declares a key of the object.
+/// Returns the alternative of a kOneOf type that fits the keys of an object best. It declares most of these
+/// keys, where a required key outweighs all optional ones; among equals it is the first one. Returns null if
+/// several alternatives accept objects and none declares a key of this object.
 const Type* chosen_alternative(const Type& one_of, const JsonValue& object);
 
 /// Returns whether a key is ignored in every object: comments "//" and extensions "x-...".
