@@ -19,8 +19,8 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 /// Returns the columns of modes.npy, in order.
 std::vector<Column> mode_columns_of(const Model& model);
 
-/// The columns of modes.npy with the range of a state's rows in supports.npy: the first row and one past the
-/// last.
+/// Numbers of the two columns of modes.npy that give the rows of a state in supports.npy: its first row, and
+/// one past its last row.
 inline constexpr std::size_t kFirstCachedContact = 5, kEndOfCachedContacts = 6;
 /// Returns the columns of supports.npy, in order.
 std::vector<Column> contact_cache_columns();

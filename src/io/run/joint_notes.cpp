@@ -37,8 +37,8 @@ class NamedRows {
 /// Relative size below which a difference of two contributions is rounding error.
 constexpr double kCancelled = 1e-9;
 
-/// Returns the number of rows of a joint whose Jacobian is zero: the length of a rod whose ends coincide, or
-/// whose ends are on one part that does not deform between them.
+/// Returns the number of rows of a joint whose row of C_q is zero. An example is a rod whose ends coincide,
+/// or whose ends are on one part that does not deform between them.
 int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
   int count = 0;
   for (int r = 0; r < joint.rows; ++r) {
@@ -80,8 +80,8 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 }  // namespace
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
-  // Redundant rows agree with the rows that imply them up to this fraction of the acceleration that closes a
-  // gap of the joint's length.
+  // Largest disagreement of a redundant row with the rows that imply it, relative to the acceleration that
+  // the joint requires plus the one that closes a gap of the joint's length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();
@@ -149,7 +149,7 @@ std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t 
   auto joint_of = [&](const ImpulseOnEngage& impulse) -> const JointModel& {
     return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];
   };
-  auto reported = [&](std::size_t i) {  // whether an earlier jump of this joint's path has been reported
+  auto reported = [&](std::size_t i) {  // an earlier jump of this joint's path exists
     return std::any_of(
         all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
         [&](const ImpulseOnEngage& other) { return other.of_path && other.joint == all[i].joint; });

@@ -60,7 +60,8 @@ class NpyReader {
   std::int64_t rows() const { return rows_; }
   /// Returns the number of columns, or kNpyVector.
   int columns() const { return columns_; }
-  /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()).
+  /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()) to `numbers`, row after row.
+  /// Throws std::out_of_range if there are no such rows.
   void read(std::int64_t row, double* numbers, std::int64_t count = 1) const;
 
  private:

@@ -35,9 +35,10 @@ struct RunOptions {
 /// which may be changed before the run is constructed.
 class Run {
  public:
-  /// Prepares the model, then creates and locks the folder and records the first state; or, resuming, reads
-  /// the folder. Throws std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming with
-  /// another scene, build, step, method or frame rate), std::system_error. The scene must outlive the run.
+  /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
+  /// run locks and reads the folder. Throws std::invalid_argument (a bad scene), OutputRefused,
+  /// RecordingMismatch (resuming with another scene, build, step, method or frame rate), std::system_error.
+  /// The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
@@ -49,7 +50,7 @@ class Run {
   bool simulate();
 
   /// Performs a task after the simulation and records its wall time and files in run.json: write("meshes",
-  /// {"meshes/frame_*.obj"}, ...).
+  /// {"meshes/frame_*.obj"}, task).
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
@@ -71,7 +72,7 @@ class Run {
  private:
   /// Writes the first state and the files of a new run.
   void begin_recording();
-  /// Checks that the recorded run fits to the scene, and sets the simulation to its last state.
+  /// Checks that the recorded run belongs to this scene, and sets the simulation to the last recorded state.
   void resume_recording();
   void check_resumable() const;
   void set_last_state(const Recording& recorded, std::int64_t& keep);
@@ -101,7 +102,7 @@ class Run {
   FrameSchedule schedule_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RecordingWriter> writer_;
-  std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
+  std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene requests them
   RunRecord record_;
   double recorded_time_ = -1;  // of the last recorded state, s
   // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose

@@ -20,18 +20,19 @@ struct RunRecord {
   enum class Status { running, complete, stopped, failed };
 
   Status status = Status::running;
-  std::string message;  ///< reason of stopped or failed
+  std::string message;  ///< why the run was stopped or failed
 
   // Options.
   BuildInfo build;
   std::vector<std::string> command;  ///< the command line
-  std::string scene;                 ///< name
+  std::string scene;                 ///< name of the scene
   std::string scene_file;
   std::vector<std::string> overrides;  ///< assignments "/json/pointer=value" applied to the scene
   std::uint64_t scene_hash = 0;
   double end = 0;         ///< requested end time, s
   double asked_step = 0;  ///< requested fixed step, s; 0 with a tolerance
-  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; or 0
+  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; 0
+                    ///< with a tolerance
   double tolerance = 0;                      ///< bound on the error of a step; 0: fixed steps
   double frame_rate = 0;                     ///< 1/s
   std::string integrator, asked_integrator;  ///< method in use; requested method, which may be kAutomatic
@@ -41,10 +42,11 @@ struct RunRecord {
   std::string graphics;       ///< graphics library of the pictures; empty without pictures
 
   // Progress.
-  std::int64_t steps = 0, steps_done = 0;  ///< of the whole run (0 with a tolerance); done so far
-  double time = 0;                         ///< of the last state, s
-  std::int64_t states = 0;                 ///< number of recorded states
-  int resumed = 0;                         ///< number of times the run was resumed
+  /// Number of steps of the whole run (0 with a tolerance), and of steps done so far.
+  std::int64_t steps = 0, steps_done = 0;
+  double time = 0;          ///< time of the last state, s
+  std::int64_t states = 0;  ///< number of recorded states
+  int resumed = 0;          ///< number of times the run was resumed
 
   // Cost, summed over all sessions of a resumed run.
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, s
