@@ -1,6 +1,6 @@
-# CHOLMOD, the sparse Cholesky factorisation of SuiteSparse, as the target SuiteSparse::CHOLMOD. SuiteSparse 7 and later
-# bring config files; older ones (Debian 12) bring neither those nor pkg-config files and are found by header and library.
-# Sets CHOLMOD_FOUND, CHOLMOD_VERSION and CHOLMOD_SUITESPARSE_VERSION, both read from the headers.
+# Finds CHOLMOD, the sparse Cholesky factorisation of SuiteSparse, and defines the target SuiteSparse::CHOLMOD. SuiteSparse 7
+# and later have CMake config files. Older versions (Debian 12) have neither config files nor pkg-config files; their header
+# and library are searched for. Sets CHOLMOD_FOUND, and CHOLMOD_VERSION and CHOLMOD_SUITESPARSE_VERSION from the headers.
 include(FindPackageHandleStandardArgs)
 
 find_package(CHOLMOD CONFIG QUIET)
@@ -13,7 +13,8 @@ else()
   mark_as_advanced(CHOLMOD_INCLUDE_DIR CHOLMOD_LIBRARY)
 endif()
 
-# The version numbers that the headers named in ARGN define as ${prefix}_MAIN_VERSION and so on.
+# Sets `result` to the version, for example 5.2.0, that a header defines as ${prefix}_MAIN_VERSION, ${prefix}_SUB_VERSION and
+# ${prefix}_SUBSUB_VERSION. ARGN: possible names of the header.
 function(_cholmod_read_version prefix result)
   find_file(_cholmod_header NAMES ${ARGN} HINTS ${CHOLMOD_INCLUDE_DIR} PATH_SUFFIXES suitesparse NO_CACHE)
   set(version "")
@@ -40,7 +41,7 @@ if(CHOLMOD_FOUND AND NOT TARGET SuiteSparse::CHOLMOD)
   add_library(SuiteSparse::CHOLMOD UNKNOWN IMPORTED)
   set_target_properties(SuiteSparse::CHOLMOD PROPERTIES IMPORTED_LOCATION ${CHOLMOD_LIBRARY}
                                                         INTERFACE_INCLUDE_DIRECTORIES ${CHOLMOD_INCLUDE_DIR})
-  # Libraries that a static CHOLMOD leaves open.
+  # A static CHOLMOD needs these libraries, but does not contain them.
   foreach(library amd camd colamd ccolamd suitesparseconfig)
     string(TOUPPER ${library} upper)
     find_library(CHOLMOD_${upper}_LIBRARY ${library})

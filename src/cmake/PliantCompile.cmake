@@ -1,5 +1,5 @@
-# How pliant is compiled. pliant_options travels with the targets (layout and rounding must be the same in the library
-# and in its clients); pliant_warnings is for our own sources only.
+# Compiler options of pliant. Programs that link pliant get the options of pliant_options too, because the layout of types and
+# rounding must be the same in both. The options of pliant_warnings are for the sources of pliant only.
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
@@ -18,26 +18,27 @@ if(PLIANT_WERROR)
   target_compile_options(pliant_warnings INTERFACE -Werror)
 endif()
 if(PLIANT_NATIVE)
-  # With the targets too: how vectors are passed depends on it, and a client that differed would not link.
+  # Programs that link pliant get this option too. It changes how vectors are passed to functions, so that without it a
+  # program would not link.
   target_compile_options(pliant_options INTERFACE -march=native)
-  # GCC 12 takes its own AVX-512 intrinsics for uninitialised reads, and sees them read small matrices, which they do
-  # not reach at run time.
+  # GCC 12 wrongly reports uninitialised reads in its own AVX-512 intrinsics, and reads beyond the end of small matrices that
+  # never happen at run time.
   target_compile_options(pliant_warnings INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()
 if(PLIANT_SANITIZE)
-  # A null pointer faults by itself, and so does a misaligned packet; the checks of both, one for each access, would
-  # double the time to compile and to run.
+  # The checks for null pointers and alignment are off, because they would double the times of compiling and running. An
+  # access through a null pointer, or of a misaligned vector, ends the program anyway.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
                       -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
-  add_compile_definitions(PLIANT_SANITIZED)  # tests that sanitizers slow down, or that count allocations, ask
+  add_compile_definitions(PLIANT_SANITIZED)  # read by tests that sanitizers slow down, or that count allocations
 endif()
 
-# A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core, and
-# the component core of the installed package. A header-only private library goes in as $<BUILD_INTERFACE:...>: then
-# clients need not have it.
+# pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) defines the library pliant_core with the alias pliant::core, and the
+# component core of the installed package. Write a private header-only library as $<BUILD_INTERFACE:...>. Then programs that
+# link pliant do not need this library.
 function(pliant_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(pliant_${name} ${arg_SOURCES})
@@ -49,7 +50,7 @@ function(pliant_library name)
   target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
-  if(PLIANT_UNITY)  # a source is then not the main file, whose unnamed namespace may be in its types
+  if(PLIANT_UNITY)  # GCC warns if a type uses an unnamed namespace outside the main file; in batches no source is that file
     target_compile_options(pliant_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   pliant_install_library(${name} ${arg_PUBLIC} ${arg_PRIVATE})

@@ -1,4 +1,5 @@
-# The target docs: pages of the engine by Doxygen, where it is installed (Debian package doxygen). Warnings are errors.
+# Defines the target docs if Doxygen is installed (Debian package doxygen): it makes pages of the headers. Warnings of Doxygen
+# are errors.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
   return()

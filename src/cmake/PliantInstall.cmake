@@ -1,11 +1,11 @@
-# Installation: headers, libraries, the CMake package pliant with one component a library, and pliant.pc for core. Each
-# component is an export set of its own, so that a client of core is asked for nothing that only render needs.
+# Installs headers, libraries, the CMake package pliant with one component per library, and pliant.pc for core. Each
+# component has its own export set, so that a program that uses core only does not need the packages of render.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(PLIANT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
 
-# Makes the library pliant_${name} the component ${name}. The libraries it links follow: pliant:: ones become components
-# that it needs, the others the packages that a client has to find.
+# Defines the component ${name} with the library pliant_${name}. ARGN: the libraries that it links. Those in the namespace
+# pliant:: become required components; for the others, the component finds their packages.
 function(pliant_install_library name)
   if(NOT PLIANT_INSTALL)
     return()
@@ -19,7 +19,7 @@ function(pliant_install_library name)
     elseif(package)
       get_property(client GLOBAL PROPERTY PLIANT_CLIENT_${package})
       if(NOT client)
-        message(FATAL_ERROR "pliant_${name} links ${library}, but no CLIENT tells how a client finds ${package}")
+        message(FATAL_ERROR "pliant_${name} links ${library}; add CLIENT to pliant_package(${package}), so that clients find it")
       endif()
       string(APPEND finds "find_dependency(${client})\n")
     endif()
@@ -40,7 +40,7 @@ function(pliant_install_library name)
   install(FILES ${PROJECT_BINARY_DIR}/package/pliant-${name}.cmake DESTINATION ${PLIANT_PACKAGE_DIR})
 endfunction()
 
-# pliant.pc says what the target core says: its definitions and options are read from there.
+# Writes pliant.pc with the definitions and options of the target pliant_options.
 function(_pliant_write_pkg_config file)
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE libdir)
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}
@@ -55,7 +55,8 @@ function(_pliant_write_pkg_config file)
   configure_file(${PROJECT_SOURCE_DIR}/src/cmake/pliant.pc.in ${file} @ONLY)
 endfunction()
 
-# What is installed once: headers of the libraries that are built, the package's config and version, pliant.pc.
+# Installs the files that are common to all components: headers of the built libraries, the config and version files of the
+# CMake package, and pliant.pc.
 function(pliant_install_package)
   set(not_built "")
   foreach(folder scene io render)

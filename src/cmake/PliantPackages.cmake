@@ -1,8 +1,10 @@
-# The packages pliant builds with; only Eigen (and the system's threads) is needed for the engine itself. Each is looked
-# for only when the option that needs it is on, and a missing one is an error that names the Debian package.
+# Finds the packages that the build needs. The library core needs Eigen, Spectra and the threads of the system. The other
+# packages are searched for only if the option that needs them is ON. A missing package is an error that names its Debian
+# package.
 
-# Notes a package that was found: pliant_package(Eigen VERSION v TARGETS t... [CLIENT "arguments of find_dependency"]).
-# TARGETS tell, in the table printed at the end, who uses it; CLIENT is how a client of the installed library finds it.
+# Registers a package that was found: pliant_package(Eigen VERSION v TARGETS t... [CLIENT "arguments of find_dependency"]).
+# TARGETS: the imported targets of the package; the table at the end lists which libraries link them. CLIENT: the arguments
+# of find_dependency with which a program that uses the installed library finds the package.
 function(pliant_package name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "VERSION;CLIENT" "TARGETS")
   set_property(GLOBAL APPEND PROPERTY PLIANT_PACKAGES ${name})
@@ -13,7 +15,8 @@ function(pliant_package name)
   set_property(GLOBAL PROPERTY PLIANT_CLIENT_${name} "${arg_CLIENT}")
 endfunction()
 
-# Stops when a package is missing: pliant_require(PNG_FOUND libpng-dev PLIANT_APPS).
+# Stops if a package is missing: pliant_require(PNG_FOUND libpng-dev PLIANT_APPS). The last argument is the option that needs
+# the package; empty if the package is always needed.
 function(pliant_require found debian_package option)
   if(NOT ${found})
     string(REPLACE "_FOUND" "" name ${found})
@@ -24,19 +27,20 @@ function(pliant_require found debian_package option)
   endif()
 endfunction()
 
-# Eigen 5 refuses a request for version 3.4: ask for each.
+# Eigen 5 rejects a request for version 3.4, so both versions are requested in turn.
 find_package(Eigen3 3.4 QUIET CONFIG)
 if(NOT Eigen3_FOUND)
   find_package(Eigen3 5 QUIET CONFIG)
 endif()
 pliant_require(Eigen3_FOUND libeigen3-dev "")
-# A client must compile with the Eigen the library was compiled with: same major version, not older.
+# A program that links pliant must compile with an Eigen of the same major version as that of the library, and not an older
+# one.
 pliant_package(Eigen VERSION ${Eigen3_VERSION} TARGETS Eigen3::Eigen CLIENT "Eigen3 ${Eigen3_VERSION} CONFIG")
 
 find_package(Threads REQUIRED)
 pliant_package(Threads VERSION system TARGETS Threads::Threads CLIENT "Threads")
 
-# Header-only, and private to the modes of meshes: clients do not see it.
+# Spectra is header-only. Only the computation of modes of meshes uses it, so programs that link pliant do not need it.
 find_package(spectra QUIET CONFIG PATHS /usr/share/spectra/cmake)
 set(Spectra_FOUND ${spectra_FOUND})
 pliant_require(Spectra_FOUND libspectra-dev "")
@@ -73,7 +77,7 @@ if(PLIANT_TESTS)
   pliant_package(Catch2 VERSION ${Catch2_VERSION} TARGETS Catch2::Catch2 Catch2::Catch2WithMain)
 endif()
 if(PLIANT_TESTS AND PLIANT_APPS)
-  # An independent judge of the scenes' schema. Its config file tells no version.
+  # valijson is an independent validator of the schema of scenes. Its config file gives no version.
   find_package(valijson QUIET CONFIG)
   pliant_require(valijson_FOUND libvalijson-dev PLIANT_TESTS)
   pliant_package(valijson VERSION - TARGETS valijson)

@@ -1,7 +1,8 @@
-# What was found and what is off: the table at the end of configuring.
+# Prints a table at the end of configuring: the packages that were found, and the options that are OFF.
 
-# The packages that the targets of a directory, or of those below it, link: sets PLIANT_USERS_<package> in the caller's
-# scope to the names shown for them. `shown` names all targets alike; empty: each by its own name.
+# Finds the packages that the targets of a directory and its subdirectories link. For each package, sets
+# PLIANT_USERS_<package> in the caller's scope to the list of the targets. `shown`: the name for all these targets in the
+# table; if empty, each target has its own name.
 function(_pliant_collect_users directory shown)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
@@ -40,7 +41,7 @@ function(_pliant_pad text width result)
   set(${result} "${text}${spaces}" PARENT_SCOPE)
 endfunction()
 
-# A line about an option that is off: what is missing because of it.
+# Prints a line if an option is OFF. `what`: the features that are missing because of this.
 function(_pliant_off_line option what)
   if(NOT ${option})
     _pliant_pad("${option}" 18 option)

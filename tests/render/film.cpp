@@ -50,7 +50,8 @@ TEST_CASE("camera and ground do not move, and show the whole motion") {
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 4);
-    // One track, three springs, one of them attached to the world, and a string that is, too.
+    // One track; the lines of three springs and a dot where one of them is attached to the world; the line of
+    // a string and a dot where it is attached to the world.
     REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.

@@ -149,7 +149,7 @@ std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t 
   auto joint_of = [&](const ImpulseOnEngage& impulse) -> const JointModel& {
     return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];
   };
-  auto reported = [&](std::size_t i) {  // an earlier jump of this joint's path exists
+  auto reported = [&](std::size_t i) {  // whether an earlier jump of this joint's path has been reported
     return std::any_of(
         all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
         [&](const ImpulseOnEngage& other) { return other.of_path && other.joint == all[i].joint; });
