@@ -24,7 +24,7 @@ struct PixelRectangle {
   int left, top, right, bottom;  // pixels; right and bottom are excluded
 };
 
-// Fills a box. share: opacity; color_of_row(y): the colour of a row.
+// Fills a rectangle. share: opacity; color_of_row(y): function that returns the colour of row y.
 template <class ColorOfRow>
 void fill(Image& image, const PixelRectangle& box, float share, ColorOfRow&& color_of_row) {
   for (int y = std::max(0, box.top); y < std::min(image.height, box.bottom); ++y) {

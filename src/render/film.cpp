@@ -13,7 +13,7 @@ namespace {
 
 const Eigen::Vector3f kSpringColor(0.25f, 0.27f, 0.3f);
 constexpr float kSpringWidth = 1.5f, kAnchorWidth = 6;  // pixels
-constexpr double kVertical = 1e-5;  // a view is vertical if its angle to z has a smaller sine
+constexpr double kVertical = 1e-5;  // a view is vertical if the sine of its angle to z is at most this
 constexpr double kNoStrain = 1e-9;  // a smaller strain, or displacement / size of the part, is rounding error
 
 Eigen::Vector3f vector_of(const Color& color) {

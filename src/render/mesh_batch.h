@@ -43,7 +43,7 @@ class MeshBatch {
   struct Topology {
     Eigen::Matrix3Xi triangles, corners;
     std::vector<int> position, normal;   // columns of x and of normals in the mesh, one for each batch vertex
-    std::vector<std::uint32_t> indices;  // of batch vertices, from 0 in each body
+    std::vector<std::uint32_t> indices;  // indices of batch vertices, from 0 in each body
   };
   static Topology make_topology(const TriangleMesh& mesh, std::size_t body);
   void set_attributes(const gl::VertexArray& array) const;

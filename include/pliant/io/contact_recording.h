@@ -25,7 +25,7 @@ class ContactRecordingWriter {
   /// Creates new tables. Throws std::system_error if a table exists. All members throw it if a table cannot
   /// be written.
   static ContactRecordingWriter create(const std::filesystem::path& folder);
-  /// Opens existing tables and removes their rows after time t (s). Throws RecordingMismatch if they are
+  /// Opens existing tables and removes their rows after time t (s). Throws RecordingMismatch if a table is
   /// damaged.
   static ContactRecordingWriter resume(const std::filesystem::path& folder, double t);
 

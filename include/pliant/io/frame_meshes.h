@@ -18,7 +18,7 @@ struct NamedMesh {
   std::string name;  ///< name of the part, obstacle or plane
   Color color{};
   TriangleMesh mesh;       ///< m, world
-  VecX<double> values{};   ///< per vertex, the quantity of the scene's coloring; empty without a coloring
+  VecX<double> values{};   ///< quantity of the scene's coloring at each vertex; empty without a coloring
   bool by_values = false;  ///< whether pictures colour the mesh by `values`
 };
 

@@ -1,7 +1,8 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
-// state is a state after a step, never an interpolated one; a run resumed from it reproduces the bits.
+// state is a state after a step, never an interpolated one. A run resumed from it reproduces all later
+// states bit by bit.
 // layout.json names every column.
 #pragma once
 

@@ -2,7 +2,7 @@
 // ends. One header line, one line per recorded state, numbers in the shortest form that reads back exactly.
 // Columns:
 //   t                                        s
-//   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene asks for it):
+//   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene requests it):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s, world; rad/s, body frame

@@ -42,8 +42,9 @@ struct Picture {
   /// camera.
   struct Ground {
     bool shown = true;
-    double height = 0;  ///< z, m
-    /// Spacing of the grid, m; 0 chooses 1, 2 or 5 times a power of ten. Every fifth line is stronger.
+    double height = 0;  ///< z of the floor, m
+    /// Spacing of the grid, m. If it is 0, the renderer chooses 1, 2 or 5 times a power of ten. Every fifth
+    /// line is stronger.
     double spacing = 0;
     Eigen::Vector3f color = {0.93f, 0.935f, 0.945f};  ///< colour under the full light, without shadows
     Eigen::Vector3f grid_color = {0.60f, 0.64f, 0.70f};

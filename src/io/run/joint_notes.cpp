@@ -23,7 +23,7 @@ class NamedRows {
     else if (joints_ == kShown + 1)
       names_ += " and others";
   }
-  /// "HEADING: N rows of M joints, NAMES"; empty without rows.
+  /// Returns the text "HEADING: N rows of M joints, NAMES"; empty without rows.
   std::string text(const std::string& heading) const {
     if (rows_ == 0) return {};
     return heading + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
@@ -68,7 +68,8 @@ double size_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   return impulse.impulse.force.norm() + impulse.impulse.torque.norm() / joint.length;
 }
 
-/// Returns an impulse as text, "2 N s and 0.1 N m s", without components that are rounding errors.
+/// Returns an impulse as text, for example "2 N s and 0.1 N m s", without components that are rounding
+/// errors.
 std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   const double size = size_of(impulse, joint), force = impulse.impulse.force.norm(),
                torque = impulse.impulse.torque.norm();

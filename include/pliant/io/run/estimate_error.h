@@ -20,8 +20,8 @@ struct ErrorEstimate {
   double velocity = 0;             ///< velocity of the frames, m/s
   double angular_velocity = 0;     ///< angular velocity of the frames, rad/s
   double energy = 0;               ///< total energy, J
-  double joint_force = 0;          ///< N
-  double joint_torque = 0;         ///< N m
+  double joint_force = 0;          ///< force of a joint, N
+  double joint_torque = 0;         ///< torque of a joint, N m
   double gap = 0;                  ///< largest gap of a closed joint of the run, m
   double tolerance = 0, step = 0;  ///< tolerance and fixed step (s) of the repetition; one of them is 0
 };

@@ -54,8 +54,8 @@ class Run {
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
-  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json; a stage as in
-  /// write().
+  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json. Records the wall
+  /// time as write() does.
   const ErrorEstimate& estimate_error();
 
   /// Writes the final status to run.json: complete, or stopped with a message.
@@ -66,7 +66,7 @@ class Run {
   const FrameSchedule& schedule() const { return schedule_; }
   const std::filesystem::path& folder() const { return folder_->path(); }
   const RunRecord& record() const { return record_; }
-  /// Returns the states recorded so far.
+  /// Opens the recording for reading, with the states recorded so far.
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
@@ -85,7 +85,7 @@ class Run {
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
-  /// Writes trajectory.csv and, if the scene asks for them, the tables of contacts.
+  /// Writes trajectory.csv and, if the scene requests them, the tables of contacts.
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
@@ -104,14 +104,14 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene requests them
   RunRecord record_;
-  double recorded_time_ = -1;  // of the last recorded state, s
+  double recorded_time_ = -1;  // time of the last recorded state, s
   // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
   // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.
   std::size_t reported_impulses_ = 0;
   std::set<std::string> reported_redundant_, reported_turned_;
   std::set<TouchingPair> reported_overlaps_;
   std::vector<bool> reported_acting_;
-  StepCounters earlier_steps_;  // of earlier sessions of a resumed run
+  StepCounters earlier_steps_;  // counters of earlier sessions of a resumed run
   Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
@@ -121,7 +121,7 @@ class Run {
 FrameSchedule schedule_of(const Scene& scene);
 
 /// Returns the number of threads that the parts of a scene can use, at most that of the machine. Results do
-/// not depend on it. Prepares the parts and throws as Part::prepare().
+/// not depend on it. Prepares the parts, and throws what Part::prepare() throws.
 int automatic_threads(Scene& scene);
 
 }  // namespace pliant

@@ -34,7 +34,7 @@ struct RunRecord {
   double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; 0
                     ///< with a tolerance
   double tolerance = 0;                      ///< bound on the error of a step; 0: fixed steps
-  double frame_rate = 0;                     ///< 1/s
+  double frame_rate = 0;                     ///< frames per second, 1/s
   std::string integrator, asked_integrator;  ///< method in use; requested method, which may be kAutomatic
   std::string joint_solver;                  ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
@@ -63,11 +63,12 @@ struct RunRecord {
   double max_depth = 0;    ///< largest contact depth at a recorded state / size of the smaller part
   double open_gap = 0;     ///< widest gap of an open joint at the last state, m
   int asleep = 0;          ///< number of sleeping parts at the last state
-  std::optional<ErrorEstimate> error;  ///< if requested
+  std::optional<ErrorEstimate> error;  ///< error estimate, if requested
   std::vector<std::string> held;       ///< parameters without inertia, which were kept constant
   std::vector<std::string> skipped;    ///< computations that the scene did not need
   std::vector<std::string> notes;      ///< warnings and automatic choices
-  std::vector<std::string> files;  ///< written files, relative to the folder; series as "meshes/frame_*.obj"
+  /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
+  std::vector<std::string> files;
 
   /// Adds to the wall time of a stage.
   void add_seconds(const std::string& stage, double seconds);

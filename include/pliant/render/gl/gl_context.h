@@ -1,6 +1,6 @@
 // An OpenGL 3.3 core context without a window. Two libraries can provide one: OSMesa (Mesa before 25.1) and
-// EGL (without a surface, or on Mesa's software device). They are opened at run time, when a context is
-// requested.
+// EGL (without a surface, or on Mesa's software device). These libraries are opened at run time, when a
+// context is requested.
 #pragma once
 
 #include <memory>
@@ -38,7 +38,7 @@ class GlContext {
 
   /// Returns the address of a GL entry point; nullptr if there is none with that name.
   void* function(const char* name) const;
-  /// "OSMesa", "EGL surfaceless" or "EGL software device".
+  /// Returns "OSMesa", "EGL surfaceless" or "EGL software device".
   const std::string& backend() const { return backend_; }
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION
