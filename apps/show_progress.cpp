@@ -1,4 +1,4 @@
-// Displays of progress: a bar, lines, or nothing.
+// Displays of progress: a bar, lines of text, or nothing.
 #include "show_progress.h"
 
 #include <algorithm>

@@ -56,7 +56,7 @@ void drop(MultiBody& body, const System& system, int resolution) {
   balloon(body, system, "balloon", resolution, {0, 0, 1.5 * kRadius});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Adds three by three balloons on strings; the outer ones start pulled away from the middle one.
+/// Adds 3 x 3 balloons on strings. At the start, the outer balloons are pulled away from the middle one.
 void suspend(MultiBody& body, const System& system, int resolution) {
   constexpr double length = 1;
   body.contact.active = true;

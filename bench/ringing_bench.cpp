@@ -5,9 +5,10 @@
 // basis, the table has the processor time of a period of the lowest mode and the relative errors of the
 // frequencies. Steps of nodes are 0.9 times the largest stable step. Modes and polynomials take three steps
 // per period, which are exact. The error of nodes is the error of the frequency of the mesh plus that of the
-// method of integration. Meshes of order 2 have more nodes per element than modes use, and smaller
-// errors. Writes CSV to standard output, and then the time of each basis at given errors of the lower mode
-// and of both modes. An entry is "not reached" if no row has at most the given error.
+// method of integration. For order 2, nodes use elements of 15 nodes and modes use elements of 10 nodes, so
+// that the errors of nodes are smaller. Writes CSV to standard output, and then the time of each basis at
+// given errors of the lower mode and of both modes. An entry is "not reached" if no row has at most the given
+// error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>

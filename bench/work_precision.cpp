@@ -402,7 +402,7 @@ class AutomaticChoice {
     return text;
   }
 
-  std::map<double, double> automatic_;  // by error
+  std::map<double, double> automatic_;  // CPU ms of auto at each error
   std::map<double, Best, std::greater<>> best_;
   double sum_ = 0, max_ratio_ = 0;
   int count_ = 0;
@@ -467,7 +467,7 @@ int main(int argc, char** argv) try {
   for (const Problem& problem : problems) {
     const ErrorMeter meter(problem);
     const bool touches = meter.model().body().contact.active;
-    constexpr long steps = 1L << 17;  // of rk4 with contacts
+    constexpr long steps = 1L << 17;  // number of steps of rk4 for problems with contact
     Outcome exact, other;
     if (is_smooth(problem)) {
       exact = smooth<bench::Collocation>(problem, meter);

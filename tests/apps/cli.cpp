@@ -64,7 +64,7 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// Starts a run, and returns its process when it is recording.
+// Starts a run. Returns the number of its process when the run has recorded its first states.
 pid_t start_long_run(const TestFolder& place, const std::string& run) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -1,4 +1,5 @@
-// OBJ and PLY files: every number is read back exactly; groups and indices are correct.
+// OBJ and PLY files: positions and values are read back exactly, normals of OBJ files to six decimals; groups
+// and indices are correct.
 #include <algorithm>
 #include <charconv>
 #include <cstring>

@@ -89,7 +89,7 @@ TEST_CASE("recorded sleeping bodies continue to sleep") {
 
 namespace {
 
-/// pulled_scene, and two boxes that stand on a floor, one on the other.
+/// Returns pulled_scene() with two more boxes: one stands on a floor, the other on the first one.
 std::unique_ptr<Scene> standing_scene() {
   auto scene = pulled_scene();
   scene->body.contact.active = true;

@@ -15,7 +15,7 @@ using namespace pliant;
 
 namespace {
 
-// A run of the pulled scene, and its film.
+// A run of pulled_scene(), and its film.
 struct FilmedRun {
   NewFolder folder;
   std::unique_ptr<Scene> scene = pulled_scene();
@@ -108,7 +108,7 @@ TEST_CASE("springs are lines between their points, with a dot at world points") 
   REQUIRE(dot.points.size() == 1);
   CHECK(line.points[1] == dot.points[0]);
   CHECK(dot.points[0] == Eigen::Vector3d(0.4 + 0.2 * std::sin(9 * 0.1), 0, 1));
-  CHECK(line.points[0] == picture.tracks[0].points.back());  // both at the point (0, 0) of the blob
+  CHECK(line.points[0] == picture.tracks[0].points.back());  // both are at u = v = 0 on the blob
   filmed.scene->show_springs = false;
   CHECK(filmed.film().at(0.1).tracks.size() == 1);
 }
