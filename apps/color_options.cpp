@@ -26,13 +26,13 @@ CLI::Option* add_by(CLI::App& command, ColorOptions& options, const std::string&
 
 void add_color_by(CLI::App& command, ColorOptions& options) {
   add_by(command, options,
-         "Quantity written with each vertex of a PLY file; part for none [as in the scene]");
+         "Quantity written with each vertex of a PLY file; \"part\" for no quantity [as in the scene]");
 }
 
 void add_color_options(CLI::App& command, ColorOptions& options) {
   CLI::Option* by = add_by(command, options,
-                           "Colours in pictures: part for the colour of each part, or a quantity of the "
-                           "deformation [as in the scene]");
+                           "Colours in pictures: \"part\" for the own colour of each part, or a quantity of "
+                           "the deformation [as in the scene]");
   command
       .add_option("--color-range", options.range,
                   "Values of the first and the last colour [0 to the largest recorded value]")

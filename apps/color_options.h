@@ -16,7 +16,7 @@ struct ColorOptions {
 };
 /// Declares --color-by and --color-range.
 void add_color_options(CLI::App& command, ColorOptions& options);
-/// Declares --color-by alone, for files that contain values but no colours for them.
+/// Declares --color-by only, for commands whose files contain the values and not their colours.
 void add_color_by(CLI::App& command, ColorOptions& options);
 /// Throws CLI::ValidationError if the range is not increasing.
 void check_colors(const ColorOptions& options);

@@ -1,5 +1,5 @@
-// The commands of the program. Each declares its options; after parsing, the selected command sets the
-// action.
+// The commands of the program. Each function declares a command and its options. After parsing, the selected
+// command sets the action.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,8 @@
 
 namespace pliant_cli {
 
-/// The action of a command line. Returns an exit code; throws exceptions that failure.h reports.
+/// The action of a command line. The action returns an exit code, and throws exceptions that failure.h
+/// reports.
 using Action = std::function<int()>;
 
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line);

@@ -14,7 +14,7 @@ enum ExitCode {
   kResources = 8,
   kWouldOverwrite = 9,
   kDoesNotFit = 10,
-  kSignal = 128,  // the number of the signal is added
+  kSignal = 128,  // plus the number of the signal
 };
 
 inline constexpr const char* kExitCodesHelp =

@@ -29,7 +29,7 @@ int report(const char* what, int code) {
   return code;
 }
 
-// Names to suggest for an option that does not exist.
+// Returns the names that a message can suggest for an option that does not exist.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {

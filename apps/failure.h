@@ -8,12 +8,13 @@
 
 namespace pliant_cli {
 
-/// A resource of the machine is missing (a graphics library): exit code 8.
+/// Thrown if a resource of the machine, such as a graphics library, is missing. The exit code is 8.
 class ResourceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs a task and returns its exit code. Reports every exception and returns the exit code for it.
+/// Runs a task and returns its exit code. If the task throws, reports the exception and returns the exit code
+/// for this exception.
 int reporting_failures(const std::function<int()>& task);
 
 /// Reports a command line that could not be parsed and returns its exit code. Prints help and version too,

@@ -24,8 +24,8 @@ struct OpenRun {
 /// this program cannot read it.
 OpenRun open_run(const std::filesystem::path& folder);
 
-/// Makes a folder for frames if there is none. ending: of the file names. Throws pliant::OutputRefused if a
-/// file of one of the frames exists and `force` is false.
+/// Makes a folder for frames if there is none. ending: extension of the file names. Throws
+/// pliant::OutputRefused if a file of one of the frames exists and `force` is false.
 void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,
                           const std::string& ending, bool force);
 

@@ -13,8 +13,8 @@
 namespace pliant_cli {
 namespace {
 
-// Accepts a text if `parse` does not throw std::invalid_argument; otherwise the message of the exception is
-// shown.
+// Returns a validator that accepts a text if `parse` does not throw std::invalid_argument. Otherwise the
+// program shows the message of the exception.
 CLI::Validator parsed_by(const std::function<void(const std::string&)>& parse) {
   return {[parse](std::string& text) -> std::string {
             try {
@@ -94,10 +94,14 @@ CLI::Validator picture_size() {
 }
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
-  command.add_option("--frames", options.frames, "Frames: FIRST:END:STRIDE without END, or one number [all]")
+  command
+      .add_option("--frames", options.frames,
+                  "Frames: FIRST:END:STRIDE (END not included), or one number [all]")
       ->check(parsed_by([](const std::string& text) { pliant::FrameRange::parse(text); }))
       ->type_name("A:B:S");
-  command.add_option("--shard", options.shard, "Only share I of N of the frames, for several processes")
+  command
+      .add_option("--shard", options.shard,
+                  "Only every N-th of these frames, from the I-th on, so that N processes can share the work")
       ->check(parsed_by([](const std::string& text) { pliant::FrameRange().parse_shard(text); }))
       ->type_name("I/N");
 }

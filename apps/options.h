@@ -1,5 +1,5 @@
-// Checks of option values. A value must be a valid number from its first to its last character, in any
-// locale.
+// Checks of option values. The whole text of a value must be a valid number. The check does not depend on
+// the locale.
 #pragma once
 
 #include <string>
@@ -26,6 +26,7 @@ struct PictureSize {
   int width = 0, height = 0;
 };
 CLI::Validator picture_size();
+/// Returns the size; width and height are 0 if the text is no valid size.
 PictureSize parse_picture_size(const std::string& text);
 
 /// The selection of frames of a run: --frames and --shard.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# From a bare Debian machine to the first pictures: installs missing packages, builds the program, runs a scene.
+# Draws the first pictures on a new Debian machine: installs missing packages, builds the program, runs a scene.
 # Ends with status 4 if packages are missing and cannot be installed.
 set -eu
 cd "$(dirname "$0")/.."
@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 pliant_install
 pliant_begin "build of the program" \
-  "about $pliant_minutes_program minutes on 2 cores from nothing, with $(pliant_jobs) jobs here"
+  "about $pliant_minutes_program minutes on 2 cores in a new folder, with $(pliant_jobs) jobs here"
 if [ -f build/release/CMakeCache.txt ]; then
   pliant_configure release
 else

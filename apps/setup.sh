@@ -2,21 +2,21 @@
 # preset. Source this file from POSIX sh with the project's folder as the current one.
 # shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
-# Minutes that a stage takes from nothing on 2 cores. README.md and tests/README.md tell users the same numbers.
+# Minutes that a stage takes on 2 cores in a new folder. README.md and tests/README.md state the same numbers.
 pliant_minutes_program=4
 pliant_minutes_everything=10
 pliant_minutes_tests=25
 
-# The words of these lists are packages. a|b,c means a, or both b and c if the distribution has no a.
+# Each word of these lists is a package. a|b,c means a, or both b and c if the distribution has no package a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
-# Tests also need: both ways to draw without a screen, an independent validator of the scenes' schema, and Python for the
-# test of scenes/KEYS.md.
+# Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, and Python for
+# the test of scenes/KEYS.md.
 pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 
-# pliant_begin STAGE EXPECTATION: prints what comes and how long it takes; pliant_end prints how long it took.
+# pliant_begin STAGE EXPECTATION: prints the stage and its expected duration; pliant_end prints the actual duration.
 pliant_begin() {
   pliant_stage=$1
   pliant_stage_start=$(date +%s)
@@ -31,7 +31,7 @@ pliant_end() {
   fi
 }
 
-# Whether all given packages are installed.
+# Returns status 0 if all given packages are installed.
 pliant_installed() {
   for installed_name; do
     case $(dpkg-query -W -f '${db:Status-Abbrev}' "$installed_name" 2>/dev/null) in
@@ -41,14 +41,14 @@ pliant_installed() {
   done
 }
 
-# Whether the distribution has all given packages.
+# Returns status 0 if the distribution has all given packages.
 pliant_available() {
   for available_name; do
     apt-cache policy "$available_name" 2>/dev/null | grep -q '^  Candidate: [^(]' || return 1
   done
 }
 
-# Prints the missing packages of a list, whose words are the arguments.
+# Prints the missing packages of a list. The arguments are the words of the list.
 pliant_missing() {
   for word; do
     wanted=
@@ -57,14 +57,14 @@ pliant_missing() {
       if pliant_installed $names; then continue 2; fi
       if [ -z "$wanted" ] && pliant_available $names; then wanted=$names; fi
     done
-    # Before the package lists are read, no package is available: print the first choice.
+    # Before apt has read its package lists, no package is available. Then print the first choice.
     for name in ${wanted:-$(printf '%s' "${word%%|*}" | tr ',' ' ')}; do
       pliant_installed "$name" || printf '%s ' "$name"
     done
   done
 }
 
-# Installs the missing packages of those that every build needs and of the given words, as root or through sudo. If that is
+# Installs, as root or through sudo, the missing packages: those of every build, and those of the given words. If that is
 # impossible, prints their names and ends with status 4.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

@@ -2,10 +2,10 @@
 //
 //   assembly_bench [FOLDER] [LAYOUTS]     writes assembly_bench.csv to FOLDER and a table to standard output
 //
-// A layout is a tree of ellipsoids on ball joints, the first connected to the world, in random poses within a
-// cube whose half side is a given number of body lengths. Some layouts have one more joint for every four
-// parts. These joints close loops, possibly ones that cannot be satisfied. LAYOUTS: number of layouts of each
-// kind (1000); a tenth of it for 100 parts.
+// A layout is a tree of ellipsoids on ball joints; the first ellipsoid is connected to the world. Their
+// poses are random, within a cube whose half side is a given number of body lengths. Some layouts have one
+// more joint for every four parts. These joints close loops, and it may be impossible to satisfy them.
+// LAYOUTS: number of layouts of each kind (1000). For 100 parts there are a tenth as many.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

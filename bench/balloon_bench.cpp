@@ -7,7 +7,7 @@
 // The balloon has a radius of 0.1 m and consists of 1 mm of rubber with E = 1e7 Pa. It falls from a height of
 // half its radius; the run ends after 0.5 s. The nine balloons are of this kind, or of 0.5 mm with E = 1e5 Pa
 // and a pressure of 30 Pa; their runs end after 1 s.
-// Real-time factor: simulated time over processor time, one thread.
+// The real-time factor is simulated time / processor time, with one thread.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +28,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // of the largest stable step
+constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // step / largest stable step
     kMaxStep = 1e-3;                                            // s
 
 struct System {
@@ -56,7 +56,7 @@ void drop(MultiBody& body, const System& system, int resolution) {
   balloon(body, system, "balloon", resolution, {0, 0, 1.5 * kRadius});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Adds three by three balloons on strings; the outer ones start pulled away from the middle one.
+/// Adds 3 x 3 balloons on strings. At the start, the outer balloons are pulled away from the middle one.
 void suspend(MultiBody& body, const System& system, int resolution) {
   constexpr double length = 1;
   body.contact.active = true;
@@ -74,7 +74,7 @@ void suspend(MultiBody& body, const System& system, int resolution) {
   }
 }
 
-/// Returns the largest overlap of two bodies, or of a body and a plane, m.
+/// Returns the largest depth of a contact between two parts, or between a part and the plane, m.
 double deepest(const Simulation& simulation, const MeshFinder& finder) {
   std::vector<Contact> found;
   finder.find(simulation.state(), simulation.time(), found);

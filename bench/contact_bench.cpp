@@ -1,6 +1,6 @@
-// The cost of contact: time per body and step of ellipsoids that fall onto a plane, from the first impacts
-// until they are at rest, and of standing towers and pyramids of ten boxes. The program also measures the
-// exponent with which the cost grows with the number of bodies, and the time of each stage.
+// The cost of contact: time per body and step. The systems are ellipsoids that fall onto a plane, from the
+// first impacts until they are at rest, and standing towers and pyramids of ten boxes. The program also
+// measures the exponent with which the cost grows with the number of bodies, and the time of each stage.
 //
 //   contact_bench [FOLDER] [MAX]
 //
@@ -54,7 +54,7 @@ struct Cost {
   double step, resting_step;  ///< means over the whole run, and over its last tenth
   double asleep;              ///< a step in which all bodies sleep
   double motion, near, find, solve;
-  double deepest;  ///< largest penetration in the run, in sizes of a body
+  double deepest;  ///< largest depth of a contact in the run / 0.1 m, which is about the size of a body
   double residual;
   long fallbacks;
 };

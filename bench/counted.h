@@ -1,4 +1,4 @@
-// A scalar type that counts the additions, multiplications, divisions and square roots done with it.
+// A scalar type that counts its additions, subtractions, multiplications, divisions and square roots.
 #pragma once
 
 #include <cmath>

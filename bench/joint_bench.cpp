@@ -5,12 +5,13 @@
 //   joint_bench [FOLDER]     writes joint_bench.csv and joint_exponents.csv to FOLDER, a table to standard
 //   output
 //
-// Stages of an evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T,
-// W_c and its factor), solve (lambda and accelerations), rest (points of joints, powers). A stage needs rates
-// only, which rigid islands compute faster. Both solvers are timed, beside the choice of "auto". Projection
-// is a step minus its stages or evaluations. The stages are timed one by one in separate loops, with
-// warm caches. Every time is the minimum over rounds of all sizes: other load of the machine lasts longer
-// than one measurement and would distort the growth.
+// An evaluation of the accelerations has these stages: parts (timed with the same parts without joints),
+// rows (C_q and bias), factor (M^-1 C_q^T, W_c = C_q M^-1 C_q^T and its factor), solve (lambda and
+// accelerations), rest (points of joints, powers). A stage of RK4 needs only rates, which rigid islands
+// compute faster. Both solvers are timed, and the one that "auto" selects is named. The time of projection
+// is that of a step minus four stages (RK4) or one evaluation (Euler). The stages are timed one by one in
+// separate loops, with warm caches. Every time is the minimum over rounds of all sizes: other load of the
+// machine lasts longer than one measurement and would distort the growth.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -45,7 +46,7 @@ struct Cost {
   int links, joints;
   double evaluation, stage, rk4_step, euler_step;
   double parts, rows, factor, solve;
-  double blocks, augmented;  ///< of an evaluation with either solver
+  double blocks, augmented;  ///< times of an evaluation with each solver
   bool auto_is_augmented;    ///< whether solver "auto" selects "augmented"
 
   void minimise_with(const Cost& other) {

@@ -18,11 +18,11 @@ inline constexpr double kLinkLength = 0.6;
 /// Radius of the spheres of a net, m.
 inline constexpr double kNetRadius = 0.1;
 
-/// Adds parts and joints to a body. Their names contain consecutive numbers.
+/// Adds parts and joints to a MultiBody. The names of parts and joints contain consecutive numbers.
 class Linkage {
  public:
-  /// soft: the semi-axes of links are dynamic. tied: joints are added; without them the parts move
-  /// independently.
+  /// soft: whether the semi-axes of links are dynamic. with_joints: whether connect() adds joints; without
+  /// joints the parts move independently.
   explicit Linkage(MultiBody& body, bool soft = false, bool with_joints = true)
       : body_(body), soft_(soft), with_joints_(with_joints) {}
 
@@ -50,7 +50,8 @@ class Linkage {
   bool soft_, with_joints_;
 };
 
-/// Adds n links from the origin onwards, along x or hanging down, at rest. Link i is rolled by 0.7 i rad.
+/// Adds a chain of n links at rest that begins at the origin, along x or hanging down. Link i is rotated by
+/// 0.7 i rad about its long axis.
 inline void chain(Linkage& linkage, int n, bool hanging = false) {
   const Eigen::Quaterniond along(Eigen::AngleAxisd(hanging ? kPi / 2 : 0, Vec3<double>::UnitY()));
   const Part* previous = nullptr;
@@ -63,7 +64,7 @@ inline void chain(Linkage& linkage, int n, bool hanging = false) {
   }
 }
 
-/// Adds n links as a binary tree from the origin onwards: links 2i + 1 and 2i + 2 are connected to the far
+/// Adds n links as a binary tree that begins at the origin: links 2i + 1 and 2i + 2 are connected to the far
 /// tip of link i.
 inline void tree(Linkage& linkage, int n) {
   struct Node {
@@ -88,7 +89,8 @@ inline void tree(Linkage& linkage, int n) {
   }
 }
 
-/// Adds n links as the sides of an upright regular polygon that hangs from the origin at a corner.
+/// Adds n links as the sides of a regular polygon in a vertical plane. One of its corners hangs from the
+/// origin.
 inline void ring(Linkage& linkage, int n) {
   std::vector<const Part*> links;
   Vec3<double> corner = Vec3<double>::Zero();
@@ -102,7 +104,7 @@ inline void ring(Linkage& linkage, int n) {
     linkage.connect(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
 }
 
-/// Adds a sphere that is fixed at its centre, with n links distributed around it.
+/// Adds a sphere whose centre is joined to the origin, with n links distributed around it.
 inline void star(Linkage& linkage, int n) {
   const double radius = 0.3;
   const Part& hub = linkage.sphere(Vec3<double>::Zero(), radius);
@@ -117,8 +119,8 @@ inline void star(Linkage& linkage, int n) {
   }
 }
 
-/// Adds n x n touching spheres on a wavy surface (a flat net is singular). Each sphere is connected to its
-/// neighbours at the contact points. Two corners are pinned.
+/// Adds n x n touching spheres on a wavy surface (a flat net is singular). Ball joints connect each sphere
+/// with its neighbours at the contact points, and two corner spheres with the world.
 inline void net(Linkage& linkage, int n) {
   const auto size = static_cast<std::size_t>(n);
   auto along_x = [](int i) {

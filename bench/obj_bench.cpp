@@ -1,5 +1,5 @@
-// Time of writing mesh files of a hundred thousand triangles with normals. One CSV row for each format; the
-// target for OBJ is 20 ms.
+// Time of writing mesh files of a hundred thousand triangles with normals. Prints one CSV row for each
+// format. The target for OBJ is 20 ms.
 //
 //   obj_bench [rounds] [folder for the files]
 #include <algorithm>

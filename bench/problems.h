@@ -2,15 +2,15 @@
 // 1000 kg/m^3, and gravity is 9.81 m/s^2 along -z, unless stated otherwise.
 //
 //   A          free ellipsoid with semi-axes 0.3, 0.2, 0.1 m that spins about its unstable axis
-//   B          that ellipsoid suspended at the tip of its long axis, with a sideways initial velocity
-//   C8 ...     chain of 8 (...) of them tip to tip along x, released at rest, link i rolled by 0.7 i rad
+//   B          the ellipsoid of A, suspended at the tip of its long axis, with a sideways initial velocity
+//   C8 ...     chain of 8 (...) ellipsoids of A along x, released at rest, link i rotated by 0.7 i rad (x)
 //   D4 ...     net of 4 x 4 (...) touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
 //   dust       free spinning ellipsoid without stiffness of its semi-axes: every particle flies straight
-//   solid      free tumbling superellipsoid, tapered, twisted and bent, all its parameters elastic
-//   four-bars  40 windows of rods on hinges in a row that rotate (IFToMM A02)
-//   assembly   five stretching ellipsoids, initially apart, drawn together by their joints (Baumgarte)
+//   solid      free tumbling superellipsoid whose semi-axes, taper, twist and bend are elastic
+//   four-bars  row of 40 four-bar linkages ("windows") of rods on hinges, which rotate (IFToMM A02)
+//   assembly   five ellipsoids with elastic semi-axes, initially apart; their joints close (Baumgarte)
 //   ringing    free tumbling balloon of 432 triangles that vibrates
-//   stiff      that balloon suspended at its top by a ball joint, a thousand times as stiff, with damping
+//   stiff      the balloon of ringing, suspended at its top by a ball joint, 1000 times as stiff, damped
 //   bounce     ball that rebounds from a plane with restitution 0.8, in air with drag
 //   see-saw    ball that falls onto one end of a board on a pivot and throws up another ball
 #pragma once
@@ -25,9 +25,9 @@ namespace pliant::bench {
 
 struct Problem {
   std::string name;
-  double end;  ///< s
-  /// Length of a body, m: errors are distances of centres relative to this length. 0: errors are norms of all
-  /// coordinates by ErrorScale.
+  double end;  ///< end time, s
+  /// Length of a body, m. Errors are distances of centres divided by this length. If it is 0, errors are
+  /// norms of all coordinates by ErrorScale.
   double length;
   bool long_running;
   std::function<void(MultiBody&)> build;
@@ -39,7 +39,7 @@ inline Problem chain_of(int n, bool long_running = false) {
             chain(linkage, n);
           }};
 }
-/// Nets are chaotic: the end time is shorter for larger nets.
+/// Nets are chaotic, so the end time is shorter for larger nets.
 inline Problem net_of(int n, double end, bool long_running = false) {
   return {"D" + std::to_string(n), end, 2 * kNetRadius, long_running, [n](MultiBody& body) {
             Linkage linkage(body);

@@ -1,6 +1,6 @@
 // Reference solutions of smooth motions to nearly full precision, by two methods of order 8. The engine
-// contains neither method. They need hundreds of evaluations where RK4 needs millions. Both use accelerations
-// only, without projection.
+// contains neither method. For equal accuracy they need hundreds of evaluations where RK4 needs millions.
+// Both use accelerations only, without projection.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace pliant::bench {
 
-/// The motion y = (q, v) from an initial state. The modes of its limits and joints do not change.
+/// The motion y = (q, v) from an initial state. The modes of limits and joints are those of the initial
+/// state.
 class SmoothMotion {
  public:
   SmoothMotion(const Dynamics& dynamics, const State& start)
@@ -92,8 +93,8 @@ class Extrapolation final : public SmoothMotion {
 class Collocation final : public SmoothMotion {
  public:
   Collocation(const Dynamics& dynamics, const State& start) : SmoothMotion(dynamics, start) {
-    // The zeros of the Legendre polynomial of degree 4; integrals of the Lagrange polynomials up to each
-    // zero, and up to 1.
+    // c_: the zeros of the Legendre polynomial of degree 4, mapped to [0, 1]. a_ and b_: the integrals of
+    // the Lagrange polynomials from 0 to each zero, and from 0 to 1.
     const double near = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)),
                  far = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
     c_ = (Weights(-far, -near, near, far).array() + 1) / 2;

@@ -1,6 +1,6 @@
-// Time of a picture: 20 bodies of about 1000 triangles with shadows at 640x480, with new vertices in each
-// frame, with and without writing the PNG. One CSV row for each picture size; the target for 640x480 with PNG
-// is 45 ms (two raster threads).
+// Time of a picture of 20 bodies of about 1000 triangles each, with shadows and with new vertices in each
+// frame. Prints one CSV row for each picture size, with the times of drawing, of writing the PNG, and of
+// both. The target for 640x480 with PNG is 45 ms (two raster threads).
 //
 //   render_bench [frames] [folder for the last picture]
 #include <algorithm>

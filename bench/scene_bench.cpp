@@ -3,8 +3,8 @@
 //
 //   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
 //
-// Time: CPU time of the stepping loop, one thread. Energy error: the largest balance error of the ledger at a
-// hundred moments; gap: the widest gap of the closed joints.
+// The time is the CPU time of the stepping loop, with one thread. The energy error is the largest balance
+// error of the ledger at a hundred times, and the gap is the widest gap of the closed joints.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +27,7 @@ using namespace pliant;
 namespace {
 
 constexpr double kFirstStep = 0.02,  // s
-    kMinError = 1e-10;               // of the kinetic energy
+    kMinError = 1e-10;               // energy error / kinetic energy
 constexpr int kHalvings = 6, kSamples = 100;
 
 struct Run {

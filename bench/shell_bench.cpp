@@ -1,7 +1,8 @@
-// Time per triangle of a force evaluation for each shell energy, on spheres. CSV to standard output. Further
-// columns: the multiply-adds (the larger of products and sums) and the bytes of an evaluation, counted from
-// the formulas, and the share of two bounds that it reaches: the multiply-add peak of this machine, and the
-// bandwidth of a triad over as many bytes (in the same cache), both measured in this run.
+// Time per triangle of a force evaluation for each shell energy, on spheres. Writes CSV to standard output.
+// Further columns are the multiply-adds (the larger of the numbers of products and sums) and the bytes of an
+// evaluation, counted from the formulas. The last columns are the shares that the evaluation reaches of two
+// speeds, both measured in this run: the multiply-add peak of this machine, and the bandwidth of a triad
+// over as many bytes (in the same cache).
 //
 //   shell_bench [FOLDER]     writes shell_bench.csv to FOLDER as well
 #include <cmath>
@@ -26,9 +27,9 @@ namespace {
 struct Work {
   double multiply_adds, bytes;
 };
-/// Returns the bytes per triangle of gathering at the nodes, with `elements` elements of `corners` corners
-/// per triangle: coordinates read, forces of corners written and read, their positions, node numbers, and
-/// forces of nodes.
+/// Returns the bytes per triangle of the nodal data, for `elements` elements of `corners` corners per
+/// triangle. Each corner reads coordinates and a node number, writes its force, and reads the force and its
+/// position in the buffer again. Each node reads and writes its force.
 double gather_bytes(int corners, double elements) {
   return elements * corners * (3 * 8 + 2 * 3 * 8 + 4 + 4) + 0.5 * 2 * 3 * 8;
 }
@@ -88,8 +89,8 @@ int main(int argc, char** argv) {
     bench.measure("neo-Hookean incompressible", mesh, NeoHookeanMembrane(mesh, {1e5, 0.5, 0.01}),
                   {65, three + 9 * 8});
     bench.measure("constant pressure", mesh, ConstantPressure(mesh, 1), {40, 1.5 * three});
-    // Hinges: gradients or rest angles, angles, moments. Triangles: Q, C, sides, numbers of edges and angles,
-    // moments.
+    // Data of a hinge: gradients (linear) or rest angles (folding), angles, moments. Data of a triangle: the
+    // matrices Q and C of bending.h, sides, numbers of edges and angles, moments.
     const double triangles = gather_bytes(3, 2) + (6 + 9 + 3 + 3 + 2 * 3) * 8;
     bench.measure("linear bending", mesh, LinearBending(mesh, sheet, 1),
                   {120, hinges + 1.5 * (2 * 12 + 4) * 8 + triangles + 2 * 9 * 8});

@@ -1,7 +1,7 @@
-// Time per triangle of a step of a spinning sphere with a linear membrane, beside its parts: the kernel of
-// the membrane, an evaluation of the accelerations, a step of RK4 (four evaluations) and of semi-implicit
-// Euler (one), at half the largest stable step. Minimum of four rounds. The last column is in kernels per
-// evaluation. CSV to standard output.
+// Time per triangle of four calls for a spinning sphere with a linear membrane: the force kernel of the
+// membrane, an evaluation of the accelerations, a step of RK4 (four evaluations) and a step of semi-implicit
+// Euler (one), at half the largest stable step. Each time is the minimum of four rounds. The last column is
+// the time per evaluation / time of the kernel. Writes CSV to standard output.
 //
 //   soft_step_bench [FOLDER]     writes soft_step_bench.csv to FOLDER as well
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 void measure(int resolution, int threads, bench::TableFile& file) {
   MultiBody body;
-  body.gravity.setZero();  // with gravity its speed would reach hundreds of m/s in the many steps
+  body.gravity.setZero();  // with gravity the speed would reach hundreds of m/s in the many steps
   auto& part = body.add<Primitive<Sphere>>("balloon", 1.0);
   part.make_shell().velocity({0, 0, 0}, {0.1, 0.2, 0.3});
   LocalSettings settings;

@@ -1,8 +1,9 @@
-// Time of one force evaluation of solid energies by element, law, size and threads. CSV to standard output,
-// after a comment about the columns. Operations are counted by evaluating the formulas of an
-// element with a counting number type. Bytes are those that pass through memory if caches do not retain data:
-// constants of the points, node numbers, forces written and read back, coordinates and forces once for each
-// node. The bandwidth is that of a triad over as many bytes, in the same cache.
+// Time of one force evaluation of solid energies, for each element, law, size and number of threads. Writes
+// CSV to standard output, after a comment about the columns. Operations are counted by evaluating the
+// formulas of an element with a counting number type. Bytes are those that pass through memory if caches do
+// not retain data: constants of the quadrature points, node numbers, forces written and read back,
+// coordinates and forces once for each node. The bandwidth is that of a triad over as many bytes, in the same
+// cache.
 //
 //   solid_bench [FOLDER]     writes solid_bench.csv to FOLDER as well
 #include <cstdio>
@@ -24,7 +25,7 @@ namespace {
 const Elasticity kMaterial(1e5, 0.3);
 
 struct Machine {
-  double multiply_adds;  // per second, of one core
+  double multiply_adds;  // multiply-adds per second of one core
 };
 
 struct Mesh {
@@ -38,7 +39,8 @@ Mesh sphere(int resolution, Solid::Order order) {
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements()};
 }
 
-/// Returns the operations of one element: the kernel of SolidEnergy with a counting number type.
+/// Returns the number of operations of one element, by running the kernel of SolidEnergy with a counting
+/// number type.
 template <class Element, class Law>
 long operations() {
   using bench::Counted;
@@ -55,7 +57,7 @@ long operations() {
   for (const TetrahedronPoint& at : Element::rule) {
     Mat3<Counted> G = product(Element::gradient(at, x), inverse);
     const long before = Counted::operations;
-    if (Law::of == NodalEnergy::Of::position) G = inverse;  // near rest, as in most runs
+    if (Law::of == NodalEnergy::Of::position) G = inverse;  // F = 1, as near rest
     Counted::operations = before;
     Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse),
                               f);
@@ -65,7 +67,7 @@ long operations() {
 
 struct Row {
   const char* name;
-  int n_nodes;  // of an element
+  int n_nodes;  // nodes of an element
   long operations, bytes;
 };
 

@@ -1,6 +1,6 @@
-// Time per step and per evaluation of the accelerations, by the features of a part and by the number of
-// parts. CSV to standard output. The last column is the cost of an evaluation in multiply-adds at the
-// measured peak of this machine.
+// Time per step and per evaluation of the accelerations, for parts with different features and for different
+// numbers of parts. Writes CSV to standard output. The last column is the cost of an evaluation in
+// multiply-adds at the measured peak of this machine.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ void rigid(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
 }
-/// A rigid part with a frozen deformation at its identity; it must not cost more.
+/// A rigid part with a frozen deformation that is the identity. It must not cost more than rigid().
 void rigid_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -29,7 +29,8 @@ void three(MultiBody& body, const std::string& name) {
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
-/// Three parameters with frozen deformations at their identity; they must cost at most 5 % more.
+/// Three parameters, and frozen deformations that are the identity. The part must cost at most 5 % more than
+/// three().
 void three_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Taper, Bend>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -52,7 +53,8 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
-/// Dynamic exponents over their whole ranges: the shape of every ring changes, and the full rule is needed.
+/// Dynamic exponents over their whole ranges. The shape of every ring of the surface changes, so the full
+/// quadrature rule is needed.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});

@@ -4,38 +4,40 @@
 //
 //   FOLDER     the program writes four files to it:
 //                work_precision.csv       one row per run; bench/plot.py draws it
-//                precision_cost.csv       time at an error
-//                precision_auto.csv       time of auto relative to the best method chosen manually
+//                precision_cost.csv       time that each method needs for given errors
+//                precision_auto.csv       time of auto / time of the best single method
 //                precision_reference.csv  poses of the bodies at the end
-//   --all      the long problems too, and a time limit of 16 s per run instead of 4 s
-//   --only     this problem only
-//   --again    The rows in FOLDER of problems that are not measured now are preserved. If FOLDER already
-//              contains a run with equal numbers of steps and evaluations, the smaller time is written. Use
-//              it on a machine that others use: several rounds of identical code reveal its run time.
+//   --all      measures the long problems too, with a time limit of 16 s per run instead of 4 s
+//   --only     measures this problem only
+//   --again    preserves the rows in FOLDER of problems that are not measured now. If FOLDER already contains
+//              the same run, with equal numbers of steps and evaluations, the smaller time is written. Use
+//              --again on a machine that others use, because the minimum over several rounds is reliable.
 //
 // Tables go to standard output.
 //
 // Methods without error control start with steps of 0.05 s, or with eight steps per run; each further setting
 // halves the step. The others start with the tolerance 0.1; each further setting divides it by ten.
-// linearly_implicit is measured in both ways; with a tolerance it is called linearly_implicit_controlled. A
+// linearly_implicit is measured with fixed steps, and with tolerances as linearly_implicit_controlled. A
 // method is measured with at least six settings that succeed. After them, the measurement stops if a run
 // exceeds 4 s, or if the error is below the resolution of the reference.
 //
-// error: at the end; positions of the bodies relative to their length, or all coordinates (error_scale.h).
-// error_along: the maximum at eight times, of a run that stops at each of them; gaps and energies are maxima
-// over these times too. error_v: velocities at the end, relative to the fastest. error_lambda: joint forces
-// at the end, relative to the largest.
+// error: error at the end, of the positions of the bodies divided by their length, or of all coordinates
+// (error_scale.h). error_along: the maximum of this error at eight times, in a run that stops at each of
+// them. Gaps and energy errors are maxima over these times too. error_v: error of the velocities at the end,
+// relative to the fastest one (error_scale.h). error_lambda: error of the joint forces at the end, relative
+// to the largest one.
 //
-// Time: CPU time of the stepping loop, one thread, the minimum of several runs without intermediate stops.
-// The trial by which auto chooses its method is not included.
+// The time is the CPU time of the stepping loop, with one thread, and the minimum of several runs without
+// intermediate stops. It does not include the trial by which auto chooses its method.
 //
-// Reference: the result of collocation; its accuracy is the difference between it and the result of
-// extrapolation (reference_methods.h). With nodes, or with joints that close: dop853 to 1e-12 and
-// dormand_prince to 1e-11, or to the smallest tolerance that rounding permits. These are two methods, but
-// both contain the engine's projection and its search for the time of closing. With contact: dop853 to 1e-10
-// and rk4 with short steps and with half of them, extrapolated, because the error of persistent contacts is
-// of first order. Errors below 100 times the difference are written as 100 times the difference. Velocities
-// and forces have their own differences.
+// The reference is the result of collocation. Its accuracy is estimated by its difference from the result of
+// extrapolation (reference_methods.h). For problems with nodes, or with joints that close, the two results
+// are those of dop853 with a tolerance of 1e-12 and of dormand_prince with 1e-11, or with the smallest
+// tolerance that rounding permits. These are two methods, but both contain the engine's projection and its
+// search for the time of closing. For problems with contact, the results are those of dop853 with 1e-10, and
+// of rk4 extrapolated from short steps and steps of half this length, because the error of persistent
+// contacts is of first order. Errors below 100 times the difference of the two results are written as 100
+// times the difference. Velocities and forces have differences of their own.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -78,7 +80,7 @@ struct Setting {
 /// A run: its states at the samples and at the end, the joint forces at the end, and its cost.
 struct Outcome {
   std::vector<State> states;
-  State end;  // of a reference: the last of the states
+  State end;  // for a reference, the last of the states
   VecX<double> lambda;
   double cpu_ms = 0, balance = 0, kinetic = 0, gap = 0;
   long evaluations = 0, steps = 0;
@@ -114,9 +116,9 @@ double simulate(const Problem& problem, const Setting& setting, int intervals, F
   return seconds;
 }
 
-/// Simulates once with samples, then repeatedly until `timed_seconds` seconds are used. With a tolerance the
-/// timed runs have no samples, because samples would shorten steps. In that case the values at the end are
-/// those of the timed runs. Throws StepFailure.
+/// Simulates once with kSamples stops, at which it samples the state, and then repeatedly until
+/// `timed_seconds` seconds are used. With a tolerance the timed runs have no samples, because samples would
+/// shorten steps. In that case the values at the end are those of the timed runs. Throws StepFailure.
 Outcome run(const Problem& problem, const Setting& setting, double timed_seconds = 0) {
   Outcome result;
   auto at_end = [&](const Simulation& simulation) {
@@ -177,7 +179,7 @@ class ErrorMeter {
   double velocity_error(const Outcome& a, const Outcome& b) const {
     return scale_->norm(VecX<double>::Zero(a.end.q.size()), a.end.v - b.end.v, b.end.v);
   }
-  /// Relative to the largest force of b; NaN without forces.
+  /// Returns the largest difference of joint forces, relative to the largest force of b; NaN without forces.
   static double force_error(const Outcome& a, const Outcome& b) {
     const double largest = b.lambda.size() > 0 ? b.lambda.cwiseAbs().maxCoeff() : 0;
     return largest > 0 ? (a.lambda - b.lambda).cwiseAbs().maxCoeff() / largest : kNone;
@@ -205,8 +207,8 @@ bool is_smooth(const Problem& problem) {
   });
 }
 
-/// Runs with the first tolerance of finest, 10 finest, 100 finest, ... at which rounding lets the method
-/// succeed.
+/// Runs with the first of the tolerances finest, 10 finest, 100 finest, ... at which the method succeeds.
+/// Rounding errors make it fail at finer ones.
 Outcome run_at_finest_tolerance(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {
@@ -273,8 +275,9 @@ struct Cost {
   double cpu_ms, error;
 };
 
-/// Returns the CPU time at an error level. It is interpolated, log-log, between the coarsest run from which
-/// on all errors are at most `level` and the run before it. Returns NaN if there is no such run.
+/// Returns the CPU time (ms) at an error of `level`. It is interpolated, in logarithms, between two runs:
+/// the coarsest one from which on all errors are at most `level`, and the run before that one. Returns NaN
+/// if there is no such run.
 double cost_at(const std::vector<Cost>& runs, double level) {
   for (std::size_t i = runs.size(); i-- > 0;) {
     if (runs[i].error <= level) continue;
@@ -285,8 +288,8 @@ double cost_at(const std::vector<Cost>& runs, double level) {
   }
   return runs.empty() ? kNone : runs.front().cpu_ms;
 }
-/// Returns the CPU time of the cheapest run with at most this error whose next two finer runs have at most
-/// three times its error. Returns NaN if there is none.
+/// Returns the CPU time (ms) of the cheapest run with an error of at most `level`, if the next two finer
+/// runs have at most three times the error of this run. Returns NaN if there is no such run.
 double cost_of_run(const std::vector<Cost>& runs, double level) {
   double min_cost = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -342,14 +345,14 @@ class Rounds {
   std::map<std::string, double> min_times_;
 };
 
-/// Compares the cost of auto at an error with that of the best method. If two successive levels have equal
-/// ratios, because the same two runs reach them, the second is ignored.
+/// Compares the cost of auto with that of the best single method at each error level. If two successive
+/// levels have equal ratios, because the same two runs reach both levels, the second level is ignored.
 class AutomaticChoice {
  public:
   explicit AutomaticChoice(const Rounds& rounds)
       : file_(rounds.open("precision_auto.csv",
                           "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n")) {}
-  /// cpu_ms: NaN if the method does not reach this error.
+  /// Adds the cost of a method at an error. cpu_ms: NaN if the method does not reach this error.
   void add(const std::string& method, double error, double cpu_ms) {
     if (std::isnan(cpu_ms)) return;
     if (method == kAutomatic)
@@ -399,7 +402,7 @@ class AutomaticChoice {
     return text;
   }
 
-  std::map<double, double> automatic_;  // by error
+  std::map<double, double> automatic_;  // CPU ms of auto at each error
   std::map<double, Best, std::greater<>> best_;
   double sum_ = 0, max_ratio_ = 0;
   int count_ = 0;
@@ -464,7 +467,7 @@ int main(int argc, char** argv) try {
   for (const Problem& problem : problems) {
     const ErrorMeter meter(problem);
     const bool touches = meter.model().body().contact.active;
-    constexpr long steps = 1L << 17;  // of rk4 with contacts
+    constexpr long steps = 1L << 17;  // number of steps of rk4 for problems with contact
     Outcome exact, other;
     if (is_smooth(problem)) {
       exact = smooth<bench::Collocation>(problem, meter);

@@ -20,7 +20,7 @@ namespace {
 
 using pliant::Vec3;
 
-// Returns zero for a number that is rounding in comparison with `scale`.
+// Returns zero for a number that is only rounding error in comparison with `scale`, otherwise the number.
 double rounded(double x, double scale) {
   return std::abs(x) <= 1e-12 * scale ? 0 : x;
 }

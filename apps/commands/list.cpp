@@ -75,8 +75,8 @@ void list_joints() {
 
 void list_integrators() {
   std::cout << pliant::kAutomatic
-            << "\n  the method of this list that advances farthest at equal cost in a trial; used with a "
-               "tolerance\n";
+            << "\n  chooses the method of this list that advances farthest at equal cost in a trial; always "
+               "uses a tolerance\n";
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
 }

@@ -1,4 +1,4 @@
-// pliant render: draws the pictures of a recorded run again, also with another camera or size.
+// pliant render: draws the pictures of a recorded run again, if requested with another camera or size.
 #include <memory>
 #include <optional>
 

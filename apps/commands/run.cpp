@@ -44,8 +44,8 @@ fs::path folder_of(const RunCommand& command) {
          (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
 }
 
-// Sets the options of the command line in the scene. A resumed run keeps its old settings where the command
-// line has none.
+// Sets the options of the command line in the scene. A resumed run keeps its old settings, except those that
+// the command line sets.
 void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& previous,
                    pliant::Scene& scene) {
   if (previous) {
@@ -246,7 +246,7 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       ->type_name("N");
   command->add_flag(
       "--estimate-error", options->estimate,
-      "Run a second time with a tenth of the tolerance, or with half the step, and print the differences; "
+      "Repeat the run with a tenth of the tolerance, or with half the step, and print the differences; "
       "steps with resting contacts are halved in both cases");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");

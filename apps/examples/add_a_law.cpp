@@ -1,4 +1,4 @@
-// Adds an energy of local deformation, in one class: springs that pull every node to its place at rest.
+// Adds an energy of local deformation, in one class: springs that pull every node to its rest position.
 #include <cstdio>
 
 #include <pliant/pliant.h>
@@ -36,7 +36,7 @@ class Tether final : public NodalEnergy {
 int main() {
   LocalSettings settings;
   settings.energies.push_back(
-      local_law("st_venant_kirchhoff_membrane", {1e5, 0.3, 1e-3}));  // E, nu, thickness
+      local_law("st_venant_kirchhoff_membrane", {1e5, 0.3, 1e-3}));  // E (Pa), nu, thickness (m)
   settings.energies.emplace_back([](const LocalMesh& mesh) { return std::make_unique<Tether>(mesh, 1.0); },
                                  "tether");
   settings.displacement = [](const Vec3<double>& x) { return Vec3<double>(0, 0, 0.3 * x[0] * x[2]); };

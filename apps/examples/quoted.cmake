@@ -1,6 +1,7 @@
-# Checks what the pages show: README.md the scene scenes/two_parts.json and the program two_parts.cpp, apps/examples/README.md
-# excerpts of the examples, scenes/README.md a scene that the program accepts and the messages about its mistakes.
-# SOURCE: the project; PROGRAM: pliant, where it is built; FOLDER: a folder for scenes.
+# Checks the quotations on the pages. README.md quotes the scene scenes/two_parts.json and the program two_parts.cpp.
+# apps/examples/README.md quotes excerpts of the examples. scenes/README.md shows a scene, which the program must accept, and
+# the messages about mistakes in it.
+# SOURCE: folder of the project; PROGRAM: path of the built program pliant; FOLDER: a folder for scenes.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/tests/package/page_block.cmake)
 

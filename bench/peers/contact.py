@@ -33,7 +33,7 @@ THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
 # balloon, count, duration in s, numbers of triangles
 BALLOONS = {"drop": (FIRM, 1, 0.5, [320, 1280, 5120]), "nine on strings": (THIN, 9, 1, [320]),
             "nine firm ones on strings": (FIRM, 9, 1, [320])}
-MAX_SECONDS = 60  # CPU s after which a configuration is not repeated
+MAX_SECONDS = 60  # a configuration is not repeated after this CPU time, s
 
 
 def ellipsoids(count, layers):
@@ -255,7 +255,7 @@ def balloon_run(balloon, count, duration, triangles, step, integrator):
 
 
 def fastest(run, *args, rounds):
-    """Returns the run of minimum CPU time. Each run is a separate process."""
+    """Returns the result of the run with the minimum CPU time. Each run is a separate process."""
     best = in_child(run, *args)
     spent = best[0] if best else 0
     for _ in range(rounds - 1):

@@ -20,7 +20,10 @@ def read_resolutions(path):
 
 
 def error(problem, pose, reference):
-    """Returns the largest distance of a body centre, in lengths of a body; for A, the angle of rotation, rad."""
+    """Returns the largest distance of a body centre from its reference / length of a body.
+
+    For A, returns the angle between the two rotations, rad.
+    """
     (c, q), (c0, q0) = pose, reference
     if not (np.isfinite(c).all() and np.isfinite(q).all()):
         return float("nan")

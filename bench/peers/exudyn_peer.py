@@ -13,7 +13,7 @@ from timing import minimum_seconds
 DISTRIBUTION = "exudyn"
 
 exu.SetWriteToConsole(False)
-SPARSE_FROM = 4  # bodies from which on the linear solver is sparse
+SPARSE_FROM = 4  # smallest number of bodies for which the linear solver is sparse
 REVOLUTE = {"X": exu.JointType.RevoluteX, "Y": exu.JointType.RevoluteY, "Z": exu.JointType.RevoluteZ}
 
 
@@ -136,7 +136,7 @@ def by_tolerance(problem, make_model, kind, tolerance):
     options = settings(problem, kind)
     time = options.timeIntegration
     time.automaticStepSize = True
-    time.numberOfSteps = round(problem.end / 0.1)  # from the longest step
+    time.numberOfSteps = round(problem.end / 0.1)  # sets the longest step to 0.1 s
     time.initialStepSize, time.minimumStepSize = 1e-4, 1e-9
     time.relativeTolerance = time.absoluteTolerance = tolerance
     return solve(make_model(problem), exu.MainSolverExplicit, options)

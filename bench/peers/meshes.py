@@ -7,7 +7,7 @@ import numpy as np
 def sphere(triangles):
     """Returns vertices on the unit sphere, the topmost one first, and triangles.
 
-    The triangles of an icosahedron are divided into four until there are enough of them.
+    Each triangle of an icosahedron is divided into four, repeatedly, until there are at least `triangles` of them.
     """
     ring = [[2 * math.cos(a), 2 * math.sin(a), 1] for a in np.arange(10) * math.pi / 5]
     upper, lower = ring[::2], [[x, y, -z] for x, y, z in ring[1::2]]

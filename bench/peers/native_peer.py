@@ -1,4 +1,4 @@
-"""Common functions of the compiled peers: they are built once in the working folder; each run is a process."""
+"""Common functions of the compiled peers. The peers are built once in the working folder. Each run is a process."""
 import subprocess
 from pathlib import Path
 

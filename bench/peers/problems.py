@@ -1,6 +1,7 @@
 """The rigid problems of bench/linkage.h and bench/problems.h, generated from their parameters.
 
-SI units; quaternions w x y z, body to world; the body frame is central and principal.
+SI units; quaternions are w x y z, body to world. The origin of a body frame is the centre of mass, and its axes are
+principal axes.
 """
 from dataclasses import dataclass, field
 
@@ -18,13 +19,13 @@ class Body:
     inertia: np.ndarray  # diagonal
     pos: np.ndarray
     quat: np.ndarray
-    vel: np.ndarray = field(default_factory=lambda: np.zeros(3))  # of the centre
+    vel: np.ndarray = field(default_factory=lambda: np.zeros(3))  # of the centre, world axes
     omega: np.ndarray = field(default_factory=lambda: np.zeros(3))  # world axes
 
 
 @dataclass
 class Joint:
-    """Ball joint: point ra of body a on point rb of body b, in their frames; the world is body -1."""
+    """Ball joint: point ra of body a coincides with point rb of body b; both in body frames. The world is body -1."""
 
     a: int
     ra: np.ndarray
@@ -36,7 +37,7 @@ class Joint:
 class Problem:
     name: str
     end: float  # s
-    length: float  # of a body, m
+    length: float  # length of a body, m
     gravity: np.ndarray
     bodies: list
     joints: list

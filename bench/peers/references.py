@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Confirms the reference poses, from which errors are measured, by a second method.
+"""Compares the reference poses, from which errors are measured, with the poses of a second method.
 
 usage: references.py OUT.csv [JOINT_REFERENCE.csv]
 
 A: Taylor series with 25 digits. The others: exact multipliers (multipliers_peer.py) with two tolerances. Columns:
-reference_difference: difference of the two methods of the reference; second_difference: difference between the two
-runs of the second method; agreement: difference between the reference and the second method. All differences are
-measured as errors are.
+reference_difference: difference of the two methods that compute the reference; second_difference: difference between
+the two runs of the second method; agreement: difference between the reference and the second method. All differences
+are computed by errors.error().
 """
 import csv
 import sys

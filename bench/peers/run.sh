@@ -12,7 +12,7 @@ script=run.py
 mkdir -p "$folder"
 python="$folder/venv/bin/python"
 [ -x "$python" ] || python3 -m venv "$folder/venv"
-# Packages are installed one by one: an engine without a wheel for this machine is skipped with a message.
+# Packages are installed one by one, so that only an engine without a wheel for this machine is skipped, with a message.
 sed 's/#.*//' "$here/requirements.txt" | while read -r package; do
   [ -z "$package" ] || "$python" -m pip install -q --disable-pip-version-check "$package" ||
     echo "$package: not installed" >&2

@@ -58,7 +58,7 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
       }
       if (!(row[k] >= 0 && row[k] < static_cast<double>(names_of.size())))
         throw RecordingMismatch(from.string() + " is damaged: row " + std::to_string(i) +
-                                " has the index of a thing that does not exist");
+                                " has the index of a part, plane, obstacle or joint that does not exist");
       text += csv_cell(names_of[static_cast<std::size_t>(row[k])]);
     }
     text += '\n';
@@ -76,13 +76,13 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
 std::vector<Column> contact_columns() {
   std::vector<Column> columns{
       {"t", "s", "time of the recorded state at the end of the step"},
-      {"a", "1", "part; in the .npy table its index, from 0"},
+      {"a", "1", "first part; in the .npy table its index, from 0"},
       {"b", "1",
-       "part, plane or obstacle; in the .npy table its index, with planes after parts and obstacles after "
-       "planes"}};
+       "second part, plane or obstacle; in the .npy table its index, with planes after parts and obstacles "
+       "after planes"}};
   add_axes(columns, "point", "m", "contact point, world");
   add_axes(columns, "normal", "1", "unit normal from b to a, world");
-  columns.push_back({"gap", "m", "gap before the correction of overlaps; negative: depth"});
+  columns.push_back({"gap", "m", "gap before the correction of overlaps; negative if the two overlap"});
   add_axes(columns, "impulse", "N s", "impulse on a during the step, world");
   add_axes(columns, "force", "N", "mean force on a over the step, world");
   columns.push_back({"sliding", "m/s", "tangential speed of a relative to b after the impulse"});
@@ -92,9 +92,11 @@ std::vector<Column> contact_columns() {
 std::vector<Column> joint_impulse_columns() {
   std::vector<Column> columns{{"t", "s", "time of the recorded state at the end of the step"},
                               {"joint", "1", "joint; in the .npy table its index, from 0"}};
-  add_axes(columns, "impulse", "N s", "reaction to contact impulses of the step, on its first side, world");
+  add_axes(columns, "impulse", "N s",
+           "reaction of the joint to contact impulses of the step, on its first side, world");
   add_axes(columns, "angular_impulse", "N m s",
-           "angular reaction to contact impulses of the step, on its first side about the joint, world");
+           "angular reaction of the joint to contact impulses of the step, on its first side, about the "
+           "joint, world");
   return columns;
 }
 

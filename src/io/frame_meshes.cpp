@@ -9,7 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns a rectangle centred at the origin and normal to `normal`.
+/// Returns a rectangle with the size of a plane's appearance, centred at the origin and perpendicular to
+/// `normal`.
 ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   constexpr double kLevel = 1e-9;
   const Vec3<double> level(-normal[1], normal[0], 0);  // perpendicular to z and to the normal
@@ -22,7 +23,8 @@ ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   return {corners, triangles};
 }
 
-/// Returns the triangles of an obstacle with one normal each; an open mesh gets both sides.
+/// Returns the triangles of an obstacle, with one normal per triangle. An open mesh gets each triangle twice,
+/// once for each side.
 TriangleMesh faceted(const ObstacleMesh& obstacle) {
   const Eigen::Index n = obstacle.triangles().cols(), all = obstacle.closed() ? n : 2 * n;
   TriangleMesh mesh;
@@ -120,7 +122,7 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there = shown_.size();  // obstacles and planes may appear and disappear
+  std::size_t there = shown_.size();  // meshes set so far; obstacles and planes may appear and disappear
   auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
     if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);

@@ -77,8 +77,8 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
     for (const char* file : {kJointImpulsesFile, kJointImpulsesTable})
       tables[file] = json_of(joint_impulse_columns());
     layout["contact_rows"] =
-        "zero or more rows per state, which have its time and describe the step that ends in it; if impacts "
-        "divide the step into parts, a contact has a row for each part";
+        "zero or more rows per state, with the time of the state; they describe the step that ends at this "
+        "time; if impacts divide the step into sections, a contact has a row for each section";
   }
   const std::string text = layout.dump(1) + "\n";
   write_whole_file(folder / kLayoutFile, text.data(), text.size(), Durable::yes);

@@ -219,10 +219,10 @@ constexpr double kPushed = 0.2;
 /// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;
 
-/// Returns q at a fraction x of the step from one state to another. Each block of coordinates is interpolated
-/// by a polynomial of degree 5 through q, rates and accelerations of both states. After an impact at the end,
-/// the rate and acceleration there are not used; if other forces acted, the polynomial is the cubic Hermite
-/// one.
+/// Returns q at a fraction x of the step from one state to another. Each block of coordinates is
+/// interpolated by a polynomial of degree 5 through q, its rates and its second derivatives at both states.
+/// If there is an impact at the end, the rate and the second derivative there are not used. If other forces
+/// acted within the step, the polynomial is the cubic Hermite one.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
   Workspace<double> work;
@@ -245,7 +245,7 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
   VecX<double> q(low.q.size());
   auto fill = [&](int first, int count) {
     auto of = [&](auto& all) { return all.segment(first, count); };
-    // The displacement that rate and acceleration at the start do not explain.
+    // The part of the displacement that is not due to the rate and the acceleration at the start.
     const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
     const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
     const double pushed =
@@ -259,7 +259,7 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
       return;
     }
     const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
-    if (jump > kJump * h * bend) {  // impact at the end: the rate there is that after the impact
+    if (jump > kJump * h * bend) {  // impact at the end: b.rate is the rate after the impact
       of(q) = of(low.q) + x * h * of(a.rate) + 0.5 * x * x * h * h * of(a.curvature) + x3 * rest;
       return;
     }
@@ -287,7 +287,7 @@ State Recording::at(double t) const {
   if (after == 0) return state(0);
   State low = state(after - 1);
   const State high = state(after);
-  // A frame at the end of a step uses that state, independent of the rounding of the two times.
+  // A frame at the end of a step is the state there, also if the two times differ by rounding.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;

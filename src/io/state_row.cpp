@@ -57,7 +57,7 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
 std::vector<Column> mode_columns_of(const Model& model) {
   std::vector<Column> columns{
       {"start", "s", "time of step 0"},
-      {"step_size", "s", "step; with error control, the next step"},
+      {"step_size", "s", "length of a step; with error control, of the next step"},
       {"step", "1", "steps since start"},
       {"error", "1", "error of the last step / tolerance; 0 without error control"},
       {"contact_residual", "m/s", "residual of the contact laws in the last step"},
@@ -76,7 +76,7 @@ std::vector<Column> mode_columns_of(const Model& model) {
       columns.push_back({"rest." + part.part->name(), "s", "time at rest; negative: the part sleeps"});
   for (const JointModel& joint : model.joints())
     columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
-  columns.push_back({"check", "1", "hash of the bits of the state"});
+  columns.push_back({"check", "1", "upper 53 bits of a hash of the state"});
   return columns;
 }
 

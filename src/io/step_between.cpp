@@ -8,8 +8,8 @@
 namespace pliant {
 
 namespace {
-/// Largest ratio of the error of a full explicit step at its end to the difference between explicit step and
-/// interpolation at half the step.
+/// Largest accepted ratio of two differences: that of a full explicit step from the recorded state at its
+/// end, and that of an explicit half step from the interpolation there.
 constexpr double kNearer = 0.1;
 }  // namespace
 

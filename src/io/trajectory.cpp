@@ -34,8 +34,8 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
       simulation_(&simulation),
       parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMaxParts)) {
   // The centre of mass of a deforming part leaves the origin of its frame, unless its shape stays symmetric.
-  // The state at time 0 does not show which, so every part with deformations and dynamic parameters gets the
-  // columns.
+  // The state at time 0 does not show which parts stay symmetric, so every part with deformations and
+  // dynamic parameters gets the columns.
   for (const PartModel& part : simulation.model().parts()) {
     const double offset = part.part->rest_inertia().moment.norm();
     const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
@@ -62,10 +62,11 @@ std::vector<Column> TrajectoryTable::columns() const {
   for (const JointModel& joint : simulation_->model().joints()) {
     if (!parts_shown_) break;
     const std::string name = "joint." + joint.joint->name();
-    add_axes(columns, name + ".force", "N", "on its first side, world");
+    add_axes(columns, name + ".force", "N", "force on the first side of the joint, world");
     if (has_torque(joint))
-      add_axes(columns, name + ".torque", "N m", "on its first side about the joint, world");
-    columns.push_back({name + ".gap", "m", "distance by which it is open"});
+      add_axes(columns, name + ".torque", "N m",
+               "torque on the first side of the joint, about the joint, world");
+    columns.push_back({name + ".gap", "m", "distance by which the joint is open"});
   }
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
     columns.push_back({std::string("energy.") + energy, "J", ""});
@@ -76,8 +77,9 @@ std::vector<Column> TrajectoryTable::columns() const {
       {"balance", "J",
        "energy.total - its value at time 0 - all works: the energy error of the method, to be compared with "
        "the change of the energies"});
-  add_axes(columns, "momentum", "kg m/s", "of all moving parts, world");
-  add_axes(columns, "angular_momentum", "kg m^2/s", "of all moving parts about the world's origin");
+  add_axes(columns, "momentum", "kg m/s", "momentum of all moving parts, world");
+  add_axes(columns, "angular_momentum", "kg m^2/s",
+           "angular momentum of all moving parts about the world's origin");
   return columns;
 }
 

@@ -1,4 +1,5 @@
-// Layout of the colour bar. Lengths are in heights of the digits, which are proportional to the image.
+// Layout of the colour bar. Lengths are in heights of a digit; the height of a digit is proportional to that
+// of the image.
 #include "color_bar.h"
 
 #include <algorithm>
@@ -13,9 +14,9 @@ namespace pliant {
 namespace {
 
 constexpr int kMinImageWidth = 160, kMinImageHeight = 120;  // pixels
-constexpr double kDigitHeight = 1.0 / 46;                   // of the image's height
+constexpr double kDigitHeight = 1.0 / 46;                   // height of a digit / height of the image
 constexpr double kPadding = 0.8, kBarWidth = 1.3, kTickLength = 0.4;
-constexpr double kBarHeight = 0.5;  // of the image's height
+constexpr double kBarHeight = 0.5;  // height of the bar / height of the image
 constexpr float kPaper = 0.8f;      // opacity of the panels
 const Eigen::Vector3f kWhite(1, 1, 1), kInk(0.16f, 0.17f, 0.2f);
 
@@ -23,7 +24,7 @@ struct PixelRectangle {
   int left, top, right, bottom;  // pixels; right and bottom are excluded
 };
 
-// Fills a box. share: opacity; color_of_row(y): the colour of a row.
+// Fills a rectangle. share: opacity; color_of_row(y): function that returns the colour of row y.
 template <class ColorOfRow>
 void fill(Image& image, const PixelRectangle& box, float share, ColorOfRow&& color_of_row) {
   for (int y = std::max(0, box.top); y < std::min(image.height, box.bottom); ++y) {

@@ -13,8 +13,8 @@ namespace {
 
 const Eigen::Vector3f kSpringColor(0.25f, 0.27f, 0.3f);
 constexpr float kSpringWidth = 1.5f, kAnchorWidth = 6;  // pixels
-constexpr double kVertical = 1e-5;  // a view is vertical if its angle to z has a smaller sine
-constexpr double kNoStrain = 1e-9;  // a strain, or a displacement over the size, below this is rounding
+constexpr double kVertical = 1e-5;  // a view is vertical if the sine of its angle to z is at most this
+constexpr double kNoStrain = 1e-9;  // a smaller strain, or displacement / size of the part, is rounding error
 
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
@@ -43,8 +43,8 @@ void Film::build_tracks() {
   }
 }
 
-// A spring is drawn as a line. A joint with one equation between two points (a rod or a string) is drawn as a
-// line too. Ends that are attached to the world are drawn as dots.
+// A spring is drawn as a line, and so is a joint with one equation between two points (a rod or a string).
+// Ends of springs and of all joints that are attached to the world are drawn as dots.
 void Film::build_connectors() {
   if (!scene_->show_springs) return;
   for (const auto& spring : scene_->body.springs())
@@ -58,8 +58,8 @@ void Film::build_connectors() {
   }
 }
 
-// Returns a box around the ends of springs and joints that are attached to the world, if they are not farther
-// from the bodies than the diagonal of the bodies' box.
+// Returns a box around those ends of springs and joints that are attached to the world and are not farther
+// from the box of the bodies than its diagonal.
 Eigen::AlignedBox3d Film::anchors(const Eigen::AlignedBox3d& bodies) const {
   Eigen::AlignedBox3d box;
   if (bodies.isEmpty()) return box;
@@ -106,7 +106,7 @@ void Film::choose_scale() {
   if (!scene_->coloring) return;
   const Coloring& coloring = *scene_->coloring;
   std::optional<double> highest;
-  // With a given range one state is enough to find out whether any part has values.
+  // If the scene gives the range, one state is enough to find out whether any part has values.
   const std::int64_t rows = coloring.range ? 1 : recording_->rows();
   for (std::int64_t row = 0; row < rows; ++row) {
     const std::optional<double> here = meshes_.high_value(recording_->state(row));

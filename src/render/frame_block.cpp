@@ -20,8 +20,8 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kNear = 0.01;       // near plane, in distances between eye and target
-constexpr double kShadowReach = 12;  // largest half size of the shadow map, in these distances
+constexpr double kNear = 0.01;       // distance of the near plane / distance between eye and target
+constexpr double kShadowReach = 12;  // largest half size of the shadow map / distance between eye and target
 
 // The filter of the shadow map extends 4 texels to each side and 5.7 texels to its corners. With this offset,
 // in texels, a plane does not shadow itself.
@@ -59,7 +59,7 @@ Matrix4d view_projection(const Camera& camera, double aspect) {
   return projection * view;
 }
 
-// Returns the map from the box (in the axes r, u, -b) to the unit cube.
+// Returns the matrix that maps the box from `low` to `high` (in the axes r, u, -b) to the unit cube.
 Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const Vector3d& low,
                  const Vector3d& high) {
   Matrix4d m = Matrix4d::Identity();
@@ -70,8 +70,8 @@ Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const 
   return m.cast<float>();
 }
 
-// Rounds a size up to a power of 2^(1/4), so that small changes of a box keep the texels of the shadow map
-// and shadows do not flicker.
+// Rounds a size up to an integer power of 2^(1/4). Small changes of a box then keep the texels of the shadow
+// map, so that shadows do not flicker.
 double steady_size(double size) {
   return std::exp2(std::ceil(4 * std::log2(size)) / 4);
 }

@@ -14,25 +14,25 @@ struct FrameBlock {
   Eigen::Matrix4f view_projection;  ///< to clip space, far plane at infinity
   Eigen::Matrix4f shadow;   ///< to [0, 1]^3: position on the shadow map, and depth along the key light
   Eigen::Matrix4f contact;  ///< to [0, 1]^3: position on the contact map, and height over the ground
-  Eigen::Vector4f eye;      ///< w: distance of the near plane, m
-  Eigen::Vector4f to_key;   ///< w: offset of shadow lookups along the normal of a body, m
+  Eigen::Vector4f eye;      ///< position of the eye, m; w: distance of the near plane, m
+  Eigen::Vector4f to_key;   ///< unit vector; w: offset of shadow lookups along the normal of a body, m
   Eigen::Vector4f key;
-  Eigen::Vector4f sky;  ///< w: height up to which the ground darkens bodies, m
+  Eigen::Vector4f sky;  ///< w: height over the ground up to which the ground darkens bodies, m
   Eigen::Vector4f bounce;
   Eigen::Vector4f background_top;
   Eigen::Vector4f background_bottom;
   Eigen::Vector4f ground;          ///< w: height, m
-  Eigen::Vector4f ground_ambient;  ///< share of the ambient light in the ground's colour
+  Eigen::Vector4f ground_ambient;  ///< share of the ambient light in the unshadowed light on the ground
   Eigen::Vector4f grid_color;
-  Eigen::Vector4f grid;  ///< x y: position of the target, in cells from a strong line; z: cell, m
-  Eigen::Vector4f
-      fade;  ///< x y: radii between which the ground fades, m; z: contact texel, m; w: its range, m
+  Eigen::Vector4f grid;  ///< x y: position of the target, in cells from a strong line; z: size of a cell, m
+  Eigen::Vector4f fade;  ///< x y: radii between which the ground fades, m; z: texel of the contact map, m; w:
+                         ///< its height, m
   Eigen::Vector4f viewport;  ///< x y: size in samples; z: texel of the shadow map, as a share of the map
 };
 
-/// Returns the block for a picture. boxes: of the bodies, relative to the target of the camera; samples_wide,
-/// samples_high: size of the picture in samples; shadow_side, contact_side: sizes of the maps in texels.
-/// Throws std::invalid_argument that names the setting that is out of range.
+/// Returns the block for a picture. boxes: bounding boxes of the bodies, relative to the target of the camera
+/// (m); samples_wide, samples_high: size of the picture in samples; shadow_side, contact_side: sizes of the
+/// maps in texels. Throws std::invalid_argument that names the setting that is out of range.
 FrameBlock frame_block(const Picture& picture, const std::vector<Eigen::AlignedBox3f>& boxes,
                        int samples_wide, int samples_high, int shadow_side, int contact_side);
 

@@ -1,7 +1,7 @@
 // All bodies of a picture in one vertex buffer and one index buffer. A vertex of the batch is a pair
-// (position, normal). A mesh vertex whose corners have different normals has one pair for each, so that sharp
-// edges stay sharp. For bodies coloured by values a second buffer contains the level of every vertex on the
-// scale.
+// (position, normal). If the triangles at a mesh vertex have different normals there, the batch has one pair
+// for each normal, so that sharp edges stay sharp. For bodies coloured by values a second buffer contains the
+// level of every vertex on the scale.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace pliant {
 class MeshBatch {
  public:
   struct Range {
-    int first = 0;  ///< index
-    int count = 0;  ///< indices
+    int first = 0;  ///< first entry in the index buffer
+    int count = 0;  ///< number of entries
   };
 
   explicit MeshBatch(const gl::Functions& gl);
@@ -30,20 +30,20 @@ class MeshBatch {
   /// does not have one finite value for each vertex.
   void update(const Picture& picture);
 
-  const std::vector<Range>& ranges() const { return ranges_; }              ///< one for each body
-  const std::vector<Eigen::AlignedBox3f>& boxes() const { return boxes_; }  ///< for bodies with triangles
+  const std::vector<Range>& ranges() const { return ranges_; }              ///< one per body
+  const std::vector<Eigen::AlignedBox3f>& boxes() const { return boxes_; }  ///< one per body with triangles
   int index_count() const { return index_count_; }
   /// Binds the arrays: attribute 0 is the position, 1 the normal.
   void bind() const { gl_.bind_vertex_array(array_.name()); }
-  /// Binds the arrays with attribute 2 in addition: the level of the value on the scale. The picture must
-  /// have a scale.
+  /// Binds the arrays and, in addition, attribute 2: the level of the value on the scale, from 0 to 1. The
+  /// picture must have a scale.
   void bind_levels() const { gl_.bind_vertex_array(leveled_array_.name()); }
 
  private:
   struct Topology {
     Eigen::Matrix3Xi triangles, corners;
-    std::vector<int> position, normal;   // columns of the mesh, one for each batch vertex
-    std::vector<std::uint32_t> indices;  // of batch vertices, from 0 in each body
+    std::vector<int> position, normal;   // columns of x and of normals in the mesh, one for each batch vertex
+    std::vector<std::uint32_t> indices;  // indices of batch vertices, from 0 in each body
   };
   static Topology make_topology(const TriangleMesh& mesh, std::size_t body);
   void set_attributes(const gl::VertexArray& array) const;

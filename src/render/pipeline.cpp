@@ -1,5 +1,5 @@
-// Draws the passes of a picture. Opaque objects are drawn first, and their kinds from front to back (bodies,
-// ground, background), so that each sample is shaded about once.
+// Draws the passes of a picture. Opaque objects are drawn before the tracks, in the order bodies, ground,
+// background. This is about from front to back, so that each sample is shaded about once.
 #include "pipeline.h"
 
 #include <algorithm>

@@ -16,14 +16,14 @@
 
 namespace pliant {
 
-/// A square texture that depths of bodies, or shares of light, are drawn to.
+/// A square texture into which a pass draws depths of bodies, or shares of the visible sky.
 struct MapTarget {
   MapTarget(const gl::Functions& gl, gl::Enum format, int side);
   gl::Texture texture;
   gl::Framebuffer framebuffer;
 };
 
-/// All calls, and the destructor, need a current context.
+/// The context must be current during all calls and the destructor.
 class Pipeline {
  public:
   Pipeline(const GlContext& context, int width, int height);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxLight = 255 * 255;
 
-// The sRGB byte for each mean of four squares.
+// Returns the sRGB byte for each value of the rounded mean of four squared sample bytes, from 0 to 255^2.
 std::vector<std::uint8_t> srgb_table() {
   std::vector<std::uint8_t> table(kMaxLight + 1);
   for (int i = 0; i <= kMaxLight; ++i) {

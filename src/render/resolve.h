@@ -1,4 +1,4 @@
-// The image from 2 x 2 samples for each pixel.
+// Computes the image from 2 x 2 samples for each pixel.
 #pragma once
 
 #include <cstdint>

@@ -13,8 +13,8 @@ namespace pliant {
 /// Returns the width of a text, in heights of its digits.
 double text_width(const std::string& text);
 
-/// Draws a text. x, y: left end of the baseline, pixels from the top left; height: of the digits, pixels;
-/// color: sRGB.
+/// Draws a text. x, y: left end of the baseline, pixels from the top left; height: height of the digits,
+/// pixels; color: sRGB.
 void draw_text(Image& image, const std::string& text, double x, double y, double height,
                const Eigen::Vector3f& color);
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kMaxDecimals = 4, kMaxDigits = 6, kMaxTicks = 12;
 
-// Returns the label of a value, with as many digits as the step needs. The notation is scientific if the
-// labels of the scale need more than kMaxDecimals decimals, or more than kMaxDigits digits before the decimal
-// point.
+// Returns the label of a value, with as many digits as are needed to distinguish multiples of the step.
+// largest: the largest absolute value of the scale. The notation is scientific if the labels of the scale
+// need more than kMaxDecimals decimals, or more than kMaxDigits digits before the decimal point.
 std::string label(double value, double step, double largest) {
   const int last = static_cast<int>(std::floor(std::log10(step) + 1e-9));
   const int first = static_cast<int>(std::floor(std::log10(largest) + 1e-9));

@@ -1,5 +1,5 @@
-// Thins out tracks. A long run records more points than a picture has pixels; a point is kept if it is at
-// least one sample away from the last point kept.
+// Thins out tracks, because a long run records more points than a picture has pixels. A point is kept if it
+// is at least one sample away from the previous kept point.
 #include "tracks.h"
 
 #include <stdexcept>

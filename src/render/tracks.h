@@ -1,4 +1,5 @@
-// The tracks of a picture in one vertex buffer, without points that are closer than one sample.
+// The tracks of a picture in one vertex buffer. Points that are less than one sample from the previous one
+// are left out.
 #pragma once
 
 #include <vector>
@@ -13,17 +14,17 @@ namespace pliant {
 class TrackBatch {
  public:
   struct Range {
-    int first = 0;     ///< point
+    int first = 0;     ///< index of the first point
     int segments = 0;  ///< number of consecutive pairs of points
   };
 
   explicit TrackBatch(const gl::Functions& gl) : gl_(gl), array_(gl), points_(gl) {}
 
-  /// Sends the tracks of a frame to the buffer. Throws std::invalid_argument that names the track that is not
-  /// finite, too far away or has a width out of range.
+  /// Sends the tracks of a frame to the buffer. Throws std::invalid_argument, which names the track, if a
+  /// track is not finite, is too far away or has a width out of range.
   void update(const Picture& picture, const FrameBlock& frame);
 
-  const std::vector<Range>& ranges() const { return ranges_; }  ///< one for each track
+  const std::vector<Range>& ranges() const { return ranges_; }  ///< one range for each track
   /// Binds the array: attribute 0 is the start of a segment and attribute 1 its end, with one instance for
   /// each segment.
   void bind(const Range& range) const;

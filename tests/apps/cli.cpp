@@ -35,12 +35,12 @@ struct Result {
   std::string out, err;
 };
 
-// A folder with a scene, in which the program runs.
+// A new folder that contains a scene. The program runs in this folder.
 struct TestFolder {
   NewFolder folder;
   TestFolder() { set_bytes(folder / "top.json", kTop); }
 
-  // `arguments` as typed in a shell; `before` is placed in front of the program.
+  // Runs the program in a shell and returns its exit code and output. before: text in front of the program.
   Result pliant(const std::string& arguments, const std::string& before = "") const {
     const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
                              arguments + " > .out 2> .err";
@@ -64,7 +64,7 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// Starts a run, and returns its process when it is recording.
+// Starts a run. Returns the number of its process when the run has recorded its first states.
 pid_t start_long_run(const TestFolder& place, const std::string& run) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -127,7 +127,7 @@ TEST_CASE("the error of a run is estimated unless no run is more accurate; the c
   CHECK(!fs::exists(place.folder / "out/best"));
 }
 
-TEST_CASE("the commands that print information") {
+TEST_CASE("commands that print information exit with 0 and write no files") {
   const TestFolder place;
   const Result info = place.pliant("info top.json");
   CHECK(info.code == 0);
@@ -279,7 +279,7 @@ TEST_CASE("bad scenes: code 3, the expected message on standard error, and no ot
   CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
-TEST_CASE("a step that is too large: warning before, code 5, the good part of the recording is kept") {
+TEST_CASE("a step that is too large gives a warning, then code 5; the good part of the recording is kept") {
   const TestFolder place;
   const Result result = place.pliant("run top.json --step 2 --end 4000 -o r");
   CHECK(result.code == 5);
@@ -325,7 +325,7 @@ TEST_CASE("options for colouring by values must be complete") {
 
 TEST_CASE("I51: a full file system ends a run with code 7, and its files are complete") {
   const TestFolder place;
-  // 512-byte blocks: run.json and scene.json fit, the growing tables soon do not.
+  // The limit is in blocks of 512 bytes: run.json and scene.json fit, but the growing tables soon do not.
   const Result result = place.pliant("run top.json --fps 1000 --end 2 -o r --quiet", "ulimit -f 40;");
   CHECK(result.code == 7);
   CHECK(has(result.err, "cannot write"));

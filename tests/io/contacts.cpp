@@ -1,5 +1,5 @@
-// contacts.csv and joint_impulses.csv: contacts with their forces, and the impulses on joints; a resumed run
-// writes identical files.
+// contacts.csv has the contacts with their forces, and joint_impulses.csv the impulses on joints. A resumed
+// run writes identical files.
 #include <pliant/io/run/run.h>
 
 #include <sstream>
@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A box at rest, and two balls on a rod that fall onto it and the floor.
+/// Returns a scene with a box at rest on a floor, and two balls that a weld connects and that fall onto the
+/// floor.
 std::unique_ptr<Scene> falling_scene() {
   auto scene = std::make_unique<Scene>();
   scene->end = 0.4;

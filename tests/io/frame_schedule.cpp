@@ -1,4 +1,4 @@
-// Steps that are taken and recorded, and frames that are requested.
+// The steps of a run, the steps whose states are recorded, and the selection of frames.
 #include <pliant/io/frame_schedule.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace frame_schedule_test {
 
 using namespace pliant;
 
-TEST_CASE("N28: steps fill the run, and the last ends at its end") {
+TEST_CASE("N28: steps fill the run, and the last step ends at the end of the run") {
   const FrameSchedule one_second(1, 1e-3, 25);
   CHECK(one_second.steps() == 1000);
   CHECK(one_second.step() == 1e-3);
@@ -47,7 +47,7 @@ TEST_CASE("I33, N24: impossible runs are refused with the reason") {
   CHECK_THROWS_AS(FrameSchedule(1, 0.1, 1e300), std::invalid_argument);
 }
 
-TEST_CASE("N30: a frame is a recorded step, or between two recorded steps") {
+TEST_CASE("N30: a frame is at a recorded state, or between the recorded states at both ends of a step") {
   for (const double step : {1e-3, 0.0007, 0.01, 0.4, 1.0 / 3})
     for (const double rate : {1.0, 24.0, 25.0, 60.0, 1000.0, 2999.0}) {
       const FrameSchedule schedule(1.3, step, rate);

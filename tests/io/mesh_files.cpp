@@ -1,4 +1,5 @@
-// OBJ and PLY files: every number is read back exactly; groups and indices are correct.
+// OBJ and PLY files: positions and values are read back exactly, normals of OBJ files to six decimals; groups
+// and indices are correct.
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -139,7 +140,7 @@ TEST_CASE("a PLY file has the size and the numbers of its header") {
                       meshes.back().mesh.triangles(2, meshes.back().mesh.triangles.cols() - 1));
 }
 
-TEST_CASE("frames become files with their number") {
+TEST_CASE("each frame becomes a file whose name has the number of the frame") {
   const NewFolder folder;
   const auto scene = free_top();
   scene->appearance[0].resolution = 1;
@@ -169,7 +170,8 @@ TEST_CASE("frames become files with their number") {
 
 namespace {
 
-/// A soft solid with curved elements and a rotation, a part with a dynamic radius, and a rigid part.
+/// Returns a scene with a soft, rotated solid with curved elements, a part with a dynamic radius, and a rigid
+/// part.
 std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   auto scene = std::make_unique<Scene>();
   scene->body.gravity.setZero();
@@ -193,7 +195,7 @@ std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
 
 }  // namespace
 
-TEST_CASE("values of the surface: a known stretch by nodes or by parameters; zero for rigid motion") {
+TEST_CASE("surface values are those of a known stretch by nodes or parameters, and zero for rigid motion") {
   for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
     const auto scene = soft_scene(by);
     Simulation simulation(scene->body, "rk4");
@@ -271,7 +273,7 @@ TEST_CASE("only surface nodes of a soft solid are in its mesh, while the state h
   CHECK(static_cast<Eigen::Index>(obj.x.size()) == vertices);
 }
 
-TEST_CASE("PLY vertices have the values under their name") {
+TEST_CASE("PLY vertices have the surface values as a property with the name of the quantity") {
   const NewFolder folder;
   const auto scene = soft_scene(SurfaceQuantity::strain);
   const Simulation simulation(scene->body);

@@ -1,4 +1,4 @@
-// A new folder for the files of a test, removed at its end.
+// A new folder for the files of a test. It is removed at the end of the test.
 #pragma once
 
 #include <cstdlib>

@@ -18,8 +18,8 @@ using namespace pliant;
 
 namespace {
 
-/// A ball above a roof of two triangles, whose coordinates are not round numbers, and a plate that is
-/// removed.
+/// Returns the text of a scene: a ball above a roof of two triangles, whose coordinates are not round
+/// numbers, a plate that is removed at 0.05 s, and a plate that is not visible.
 std::string scene_text() {
   return R"json({
     "time": {"end": 0.1, "step": 0.005},

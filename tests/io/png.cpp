@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A new folder, removed at the end.
+// A new folder, which is removed at the end of the test.
 struct Folder {
   fs::path path;
   Folder() {
@@ -92,7 +92,7 @@ TEST_CASE("equal pictures give equal files") {
   CHECK(bytes_of(folder.path / "a.png") == bytes_of(folder.path / "b.png"));
 }
 
-TEST_CASE("a PNG file that cannot be written leaves nothing, and the error gives place and reason") {
+TEST_CASE("a PNG file that cannot be written leaves no file, and the error names the path and the reason") {
   const Folder folder;
   const Image image = pattern(8, 8);
   const auto reason = [&](const fs::path& path) {
@@ -126,7 +126,7 @@ TEST_CASE("a PNG file that cannot be written leaves nothing, and the error gives
   }
 }
 
-TEST_CASE("an image whose size does not fit its bytes is refused") {
+TEST_CASE("an image whose size does not match its number of bytes is refused") {
   const Folder folder;
   Image image = pattern(4, 4);
   image.rgb.pop_back();

@@ -31,7 +31,7 @@ bool bit_equal(const State& a, const State& b) {
          a.work == b.work && a.at_limit == b.at_limit;
 }
 
-// Records every `stride`-th of the first steps; returns the recorded states.
+// Performs `steps` steps, records the state after every `stride`-th of them, and returns the recorded states.
 std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int stride) {
   Simulation simulation(scene.body, scene.integrator);
   write_layout(folder, simulation.model(), FrameSchedule(scene.end, scene.step, scene.frame_rate), {});
@@ -89,7 +89,7 @@ TEST_CASE("recorded sleeping bodies continue to sleep") {
 
 namespace {
 
-/// pulled_scene, and two boxes that stand on a floor, one on the other.
+/// Returns pulled_scene() with two more boxes: one stands on a floor, the other on the first one.
 std::unique_ptr<Scene> standing_scene() {
   auto scene = pulled_scene();
   scene->body.contact.active = true;
@@ -134,7 +134,7 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
   }
   set_bytes(folder / kContactCacheFile, whole);
-  // The range of the cache that belongs to a state: a flipped bit there damages no other state.
+  // A flipped bit in the numbers that give the rows of a state in the contact cache damages no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
   for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;
@@ -302,7 +302,7 @@ TEST_CASE("with error control, pictures between two steps are as accurate as the
   CHECK(worst.between < 3 * worst.at_steps);
 }
 
-TEST_CASE("pictures between long steps show resting parts at rest, and rolling parts on their support") {
+TEST_CASE("pictures between long steps show resting parts at rest, and a rolling ball on its slope") {
   const NewFolder folder;
   MultiBody body;
   body.contact.active = true;

@@ -383,7 +383,7 @@ TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps
   CHECK(joint_estimate.gap < 1e-14);
   CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == joint_estimate.joint_force);
 
-  // A box that slides to a stop: with error control its steps are limited by the settings.
+  // A box that slides to a stop. With error control the contact settings limit the length of its steps.
   auto box = scene_of("box");
   box->tolerance = 1e-6;
   box->integrator = "dop853";
@@ -557,7 +557,8 @@ TEST_CASE("run.json reports the methods used and the quantities that were skippe
   CHECK(record.counters.rate_points == 0);
   CHECK(record.counters.surfaces == 0);
   CHECK_FALSE(record.skipped.empty());
-  CHECK(record.stable_step == Approx(0.5 / std::sqrt(5.01)));  // nothing is stiff: half a radian of its spin
+  CHECK(record.stable_step ==
+        Approx(0.5 / std::sqrt(5.01)));  // nothing is stiff; a step rotates the top by half a radian
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
 }

@@ -8,9 +8,10 @@
 #include <pliant/part/registry.h>
 #include <pliant/scene/scene.h>
 
-/// Four parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an
-/// actuated rest value; a rigid one on a spring, with another one that hangs from it on a joint and a string;
-/// a fixed one.
+/// Returns a scene with four parts. The first part tapers up to its limits, twists and stretches; a moving
+/// spring and a rest value that depends on time drive it. The second, rigid part is on two springs. The
+/// third part is fixed. The fourth, rigid part hangs from the second one by a ball joint, and from the world
+/// by a string.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();
@@ -48,7 +49,7 @@ inline std::unique_ptr<pliant::Scene> pulled_scene() {
   return scene;
 }
 
-/// One free rigid part.
+/// Returns a scene with one free rigid part that rotates.
 inline std::unique_ptr<pliant::Scene> free_top() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();

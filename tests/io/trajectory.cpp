@@ -1,4 +1,4 @@
-// trajectory.csv: header, full precision, totals only for many parts.
+// trajectory.csv has a header and numbers in full precision. For many parts it has only totals.
 #include <pliant/io/trajectory.h>
 
 #include <cmath>
@@ -96,8 +96,8 @@ TEST_CASE("the table contains the recorded numbers exactly, with their names") {
 }
 
 TEST_CASE("a joint's force is the one on its first side, in the world frame, and its gap is closed") {
-  // Weights at rest that hang from ball joints at their tops, with rotated frames and with the weight on
-  // either side of the joint; and a swinging weight.
+  // One weight hangs at rest from a ball joint at its top, and another one swings. Their frames are rotated
+  // or not, and the weights are on the first or on the second side of their joints.
   const double g = 9.81, r = 0.1, mass = 3;
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity(),
                            turned = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.4).normalized();
@@ -156,7 +156,7 @@ TEST_CASE("a joint's force is the one on its first side, in the world frame, and
     }
 }
 
-TEST_CASE("above a hundred parts only totals are written, unless the scene requests every part") {
+TEST_CASE("for more than a hundred parts only totals are written, unless the scene requests every part") {
   Scene scene;
   for (int i = 0; i < 101; ++i) scene.body.add(make_part("p" + std::to_string(i), "sphere", {}, 1));
   scene.appearance.resize(101);

@@ -1,10 +1,10 @@
 # Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
-#   find          find_package(pliant COMPONENTS core) in the installation PREFIX, other packages hidden
+#   find          find_package(pliant COMPONENTS core) in the installation PREFIX, with the other packages disabled
 #   components    find_package with all of COMPONENTS
 #   absent        find_package with a component that does not exist: must fail and name it
 #   pkg-config    pliant.pc of PREFIX
 #   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
-#   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, with the installation PREFIX
+#   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, built with the installation PREFIX
 # GENERATOR, CXX and LAUNCHER are those of the calling build.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
@@ -55,7 +55,7 @@ endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${work}/${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
 if(WAY STREQUAL readme)
-  # Compare the time and the energy. The rest of the line is rounding, which differs from processor to processor.
+  # Compare the time and the energy. The other numbers of the line are rounding errors, which depend on the processor.
   string(REGEX REPLACE ", balance.*" "" shown "${shown}")
   string(FIND "${printed}" "${shown}" at)
   if(NOT at EQUAL 0)

@@ -38,7 +38,7 @@ def parameters(head):
 
 
 def functions(path):
-    """Returns (name, line, lines, parameters) of each function defined in a file. A lambda is not a function of its own."""
+    """Returns (name, line, lines, parameters) of each function defined in a file. A lambda belongs to the function around it."""
     text = without_comments(path.read_text(encoding="utf8"))
     found, open_at, head_start, inner = [], [], 0, 0
     for i, c in enumerate(text):

@@ -1,5 +1,6 @@
-# Checks the includes: a file includes only its own folder and folders to its left, headers of core include only Eigen
-# and the standard library, and no include uses "..". Run as cmake -D SOURCE=... -P include_order.cmake.
+# Checks the includes. A file includes only its own folder and folders to its left in the list `order`. Apart from headers of
+# pliant, headers of core include only Eigen and the standard library. No include uses "..".
+# Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(order math shape deform local part solve body collision project method contact simulate scene io render)
 set(outside_core scene io render)  # folders of libraries with their own packages
@@ -7,7 +8,7 @@ set(faults "")
 
 function(check_file path)
   cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${SOURCE} OUTPUT_VARIABLE shown)
-  if(shown STREQUAL include/pliant/pliant.h)  # all of core, as if it were in the last folder of core
+  if(shown STREQUAL include/pliant/pliant.h)  # it includes all of core, as a file of the last folder of core may
     set(shown include/pliant/simulate/pliant.h)
   endif()
   string(REGEX MATCH "^(include/pliant|src)/([a-z]+)/" ignored ${shown})

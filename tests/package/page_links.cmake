@@ -1,4 +1,5 @@
-# Checks that links between the pages of the project lead to files, and that files named in backticks with a folder exist.
+# Checks that links between the pages of the project lead to files. Also checks that files exist whose names, with a folder,
+# are in backticks on a page.
 # Run as cmake -D SOURCE=... -P page_links.cmake.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB pages ${SOURCE}/*.md)
@@ -13,7 +14,7 @@ foreach(page IN LISTS pages)
   cmake_path(RELATIVE_PATH page BASE_DIRECTORY ${SOURCE} OUTPUT_VARIABLE shown)
   file(READ ${page} text)
   string(REGEX REPLACE "```[^`]*```" "" text "${text}")
-  # Square brackets and semicolons have a meaning in lists.
+  # Square brackets and semicolons have a special meaning in CMake lists.
   string(REPLACE "](" "<LINK " text "${text}")
   string(REGEX REPLACE "[][;]" "" text "${text}")
 
@@ -28,7 +29,7 @@ foreach(page IN LISTS pages)
     endif()
   endforeach()
 
-  string(REGEX REPLACE "`[^`\n]*`" "" text "${text}")  # code may hold "](" that is no link
+  string(REGEX REPLACE "`[^`\n]*`" "" text "${text}")  # code may contain "](" that is no link
   string(REGEX MATCHALL "<LINK [^) \n]*" links "${text}")
   foreach(link IN LISTS links)
     string(REGEX REPLACE "^<LINK ([^#]*).*$" "\\1" target "${link}")

@@ -1,4 +1,5 @@
-// The colour map: its lightness increases evenly, also for three kinds of colour blindness.
+// The colour map: its lightness increases evenly, and equal steps have about equal colour differences. Ticks
+// of scales are round numbers.
 #include <pliant/render/color_map.h>
 
 #include <cmath>

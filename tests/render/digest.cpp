@@ -1,5 +1,5 @@
 // Draws two pictures with the backend named by the argument (osmesa or egl) and prints a hash of their bytes.
-// For tests that need their own environment.
+// Tests run it in a process with other environment variables.
 #include <cstdint>
 #include <cstdio>
 #include <exception>

@@ -15,7 +15,7 @@ using namespace pliant;
 
 namespace {
 
-// A run of the pulled scene, and its film.
+// A run of pulled_scene(), and its film.
 struct FilmedRun {
   NewFolder folder;
   std::unique_ptr<Scene> scene = pulled_scene();
@@ -50,7 +50,8 @@ TEST_CASE("camera and ground do not move, and show the whole motion") {
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 4);
-    // One track, three springs, one of them attached to the world, and a string that is, too.
+    // One track; the lines of three springs and a dot where one of them is attached to the world; the line of
+    // a string and a dot where it is attached to the world.
     REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
@@ -107,7 +108,7 @@ TEST_CASE("springs are lines between their points, with a dot at world points") 
   REQUIRE(dot.points.size() == 1);
   CHECK(line.points[1] == dot.points[0]);
   CHECK(dot.points[0] == Eigen::Vector3d(0.4 + 0.2 * std::sin(9 * 0.1), 0, 1));
-  CHECK(line.points[0] == picture.tracks[0].points.back());  // both at the point (0, 0) of the blob
+  CHECK(line.points[0] == picture.tracks[0].points.back());  // both are at u = v = 0 on the blob
   filmed.scene->show_springs = false;
   CHECK(filmed.film().at(0.1).tracks.size() == 1);
 }

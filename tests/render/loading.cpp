@@ -1,5 +1,5 @@
-// OpenGL is loaded when the first renderer is created, not earlier. One test case, so that the process is
-// new.
+// OpenGL is loaded when the first renderer is created, not earlier. All checks are in one test case, because
+// ctest runs each case in a new process, in which nothing has loaded OpenGL yet.
 #include <fstream>
 #include <string>
 
@@ -15,8 +15,8 @@ using namespace pliant;
 
 namespace {
 
-// Returns the first mapped library whose name looks like OpenGL or an implementation of it; empty if there is
-// none.
+// Returns the line of the first mapped library whose name is that of OpenGL or of an implementation of
+// OpenGL; empty if there is none.
 std::string mapped_gl_library() {
   std::ifstream maps("/proc/self/maps");
   REQUIRE(maps);

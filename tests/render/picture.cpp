@@ -16,7 +16,7 @@ using test::pixel_of;
 
 namespace {
 
-// Looks along +y at the origin: x to the right, z up.
+// Returns a camera that looks along +y at the origin, with x to the right and z up.
 Camera front_camera(double distance) {
   return {{0, -distance, 0}, {0, 0, 0}, {0, 0, 1}, 30};
 }
@@ -356,7 +356,8 @@ TEST_CASE("a body with values has the colours of the scale") {
     const std::array<int, 3> seen = pixel(image, pixel_of(at, picture.camera, 400, 300));
     const Eigen::Vector3f asked = mapped_color(z + 0.5);
     CAPTURE(z, seen[0], seen[1], seen[2]);
-    // Channels have the order of those of the colour: gloss and ambient light only scale and raise them.
+    // The order of the channels by brightness is that of the mapped colour, because gloss and ambient light
+    // only scale and raise the channels.
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (asked[i] > asked[j] + 0.1f) CHECK(seen[i] > seen[j]);
@@ -381,7 +382,7 @@ TEST_CASE("the colour bar is at the right, with its colours, ticks and title") {
   picture.bodies[0].values = &values;
   picture.scale = {"strain", 0, 0.2};
   const Image with = renderer.draw(picture);
-  // The columns of the bar: those whose pixel at half height has the middle colour.
+  // The columns of the bar are those that contain a pixel of the middle colour.
   const auto near = [](const std::array<int, 3>& p, const Eigen::Vector3f& color) {
     for (int c = 0; c < 3; ++c)
       if (std::abs(p[static_cast<std::size_t>(c)] - 255 * static_cast<double>(color[c])) > 3) return false;
@@ -401,7 +402,8 @@ TEST_CASE("the colour bar is at the right, with its colours, ticks and title") {
   REQUIRE(bottom - top > 200);
   for (int y = top + 2; y < bottom - 2; ++y)
     CHECK(near(pixel(with, middle, y), mapped_color((bottom + 0.5 - y) / (bottom + 1 - top))));
-  // Dark marks of five ticks beside the bar, and letters above it; without a scale nothing is drawn there.
+  // There are dark marks of five ticks beside the bar, and letters above it. Left of the bar the picture is
+  // that without a scale.
   const auto dark = [&](int x, int y) { return brightness(pixel(with, x, y)) < 200; };
   int marks = 0;
   for (int y = top - 4; y < bottom + 4; ++y) marks += dark(right + 4, y) && !dark(right + 4, y - 1);

@@ -98,7 +98,7 @@ struct Scene {
   Scene& operator=(const Scene&) = delete;
 };
 
-/// Returns the pixel of a point, from the left and from the top.
+/// Returns the position of a world point in the picture, in pixels from the left and from the top.
 inline Eigen::Vector2d pixel_of(const Eigen::Vector3d& point, const Camera& camera, int width, int height) {
   const Eigen::Vector3d forward = (camera.target - camera.eye).normalized();
   const Eigen::Vector3d right = forward.cross(camera.up).normalized(), up = right.cross(forward);

@@ -1,7 +1,7 @@
-// The contacts of the last step before each recorded state, and the reaction impulses of joints. They are
-// recorded in contacts.npy and joint_impulses.npy during the run, and written as contacts.csv and
-// joint_impulses.csv at its end. There is one row per contact for each part of the step (impacts within a
-// step divide it into parts), and one row per joint with an impulse.
+// The contacts of the last step before each recorded state, and the reaction impulses of joints. The run
+// records both in contacts.npy and joint_impulses.npy, and writes them as contacts.csv and
+// joint_impulses.csv at its end. Impacts within a step divide the step into sections. The tables have one
+// row per contact and section, and one row per joint with an impulse.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,17 @@
 
 namespace pliant {
 
-/// Return the columns of contacts.csv and joint_impulses.csv. The .npy tables have indices in place of names.
+/// Return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables have the same
+/// columns, with indices in place of names.
 std::vector<Column> contact_columns();
 std::vector<Column> joint_impulse_columns();
 
 class ContactRecordingWriter {
  public:
-  /// Creates new tables. Throws std::system_error if one exists or cannot be written, as the other members
-  /// do.
+  /// Creates new tables. Throws std::system_error if a table exists. All members throw it if a table cannot
+  /// be written.
   static ContactRecordingWriter create(const std::filesystem::path& folder);
-  /// Opens existing tables and removes their rows after time t (s). Throws RecordingMismatch if they are
+  /// Opens existing tables and removes their rows after time t (s). Throws RecordingMismatch if a table is
   /// damaged.
   static ContactRecordingWriter resume(const std::filesystem::path& folder, double t);
 

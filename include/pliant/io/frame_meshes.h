@@ -15,10 +15,10 @@
 namespace pliant {
 
 struct NamedMesh {
-  std::string name;  ///< of the part, obstacle or plane
+  std::string name;  ///< name of the part, obstacle or plane
   Color color{};
   TriangleMesh mesh;       ///< m, world
-  VecX<double> values{};   ///< per vertex, the quantity of the scene's coloring; empty without a coloring
+  VecX<double> values{};   ///< quantity of the scene's coloring at each vertex; empty without a coloring
   bool by_values = false;  ///< whether pictures colour the mesh by `values`
 };
 
@@ -27,18 +27,21 @@ class FrameMeshes {
   /// Whether the meshes include the vertex values of the scene's coloring.
   enum class Values { included, omitted };
 
-  /// Makes the surfaces of the visible parts, obstacles and planes. Open obstacles and planes get both sides.
-  /// Scene and model must outlive the object. Throws std::invalid_argument for a bad resolution.
+  /// Makes the surfaces of the visible parts, obstacles and planes. Planes and open obstacles get triangles
+  /// for both sides. Scene and model must outlive the object. Throws std::invalid_argument if a resolution
+  /// is out of range.
   FrameMeshes(const Scene& scene, const Model& model, Values values = Values::included);
 
-  /// Returns the meshes at a state: parts in their order, then the obstacles and planes that act at its time.
-  /// The reference is valid until the next call. The mesh of a rigid part is evaluated once and then only
-  /// moved.
+  /// Returns the meshes at a state: the parts in the order of the model, then the obstacles and planes that
+  /// act at the time of the state. The reference is valid until the next call. The mesh of a rigid part is
+  /// evaluated once, and later only moved.
   const std::vector<NamedMesh>& at(const State& state);
-  /// Returns the bounding box of all vertices at a state, m, world.
+  /// Returns the bounding box of the visible parts, all visible obstacles, and the planes that act at the
+  /// time of the state, m, world.
   Eigen::AlignedBox3d bounds(const State& state) const;
   /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if there
-  /// are none. The maximum is not useful: at a point force it grows without bound as the mesh is refined.
+  /// are none. The maximum is not used, because at a point force it grows without bound as the mesh is
+  /// refined.
   std::optional<double> high_value(const State& state) const;
   /// Returns the number of triangles of all meshes.
   std::int64_t triangles() const;

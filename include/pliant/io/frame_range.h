@@ -8,16 +8,16 @@
 
 namespace pliant {
 
-/// The frames first, first + stride, ... below `end`. Shard i of n contains every n-th of these, from the
-/// i-th on.
+/// The frames first, first + stride, ... below `end`. Shard i of n contains every n-th of these frames, from
+/// the i-th one on, so that n processes can share the work.
 struct FrameRange {
-  /// File names of frames have six digits.
+  /// Largest number of frames in a selection, because file names of frames have six digits.
   static constexpr std::int64_t kMaxFrames = 1000000;
 
   std::int64_t first = 0;
-  std::optional<std::int64_t> end;  ///< one past the last; when absent, all frames
+  std::optional<std::int64_t> end;  ///< one past the last frame; when absent, no limit
   std::int64_t stride = 1;
-  std::int64_t shard = 0, shards = 1;  ///< 0 <= shard < shards
+  std::int64_t shard = 0, shards = 1;  ///< index of the shard, and number of shards; 0 <= shard < shards
 
   /// Parses "first:end:stride", whose numbers may each be omitted ("10:", ":50:5"), or "7" for one frame.
   /// Throws std::invalid_argument.
@@ -28,7 +28,7 @@ struct FrameRange {
   /// Returns the number of selected frames of a recording with `count` frames. Throws std::invalid_argument
   /// if the range exceeds the recording or selects more than kMaxFrames.
   std::int64_t size(std::int64_t count) const;
-  /// Returns the numbers of the selected frames. Throws as size().
+  /// Returns the numbers of the selected frames. Throws what size() throws.
   std::vector<std::int64_t> frames(std::int64_t count) const;
 };
 

@@ -1,7 +1,8 @@
-// The steps of a run, the states that it records, and the times of its frames. Frame k is at time k / rate. A
-// frame at the end of a step uses that state. For a frame between two steps both states are recorded, so that
-// the frame is interpolated within a single step. The first and the last state are always recorded. With
-// variable steps, a state is recorded if a frame lies in the step before it or may lie in the step after it.
+// The steps of a run, the states that it records, and the times of its frames. Frame k is at time k / rate.
+// A frame at the end of a step is the state there. For a frame within a step, the states at the start and at
+// the end of the step are recorded, so that the frame is interpolated within a single step. The first and the
+// last state are always recorded. With variable steps, a state is recorded if a frame lies in the step before
+// it or may lie in the step after it.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,10 @@ namespace pliant {
 
 class FrameSchedule {
  public:
-  /// A run from 0 to `end` (s, >= 0) in steps of about `step` (s, > 0), with `rate` (> 0) frames per second.
-  /// If end is not a multiple of step (to 1e-9), the step is reduced to end / ceil(end / step). Throws
-  /// std::invalid_argument if a number is out of range or more than 1e12 steps would be needed.
+  /// Makes the schedule of a run from time 0 to `end` (s, >= 0) in steps of about `step` (s, > 0), with
+  /// `rate` (> 0) frames per second. If end is not a multiple of step (to 1e-9), the step is reduced to end /
+  /// ceil(end / step). Throws std::invalid_argument if a number is out of range or more than 1e12 steps would
+  /// be needed.
   FrameSchedule(double end, double step, double rate);
   /// Returns the schedule of a resumed run, whose step must not change: it ends with the first step at or
   /// after `end`.

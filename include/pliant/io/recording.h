@@ -1,7 +1,8 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
-// state is a state after a step, never an interpolated one; a run resumed from it reproduces the bits.
+// state is a state after a step, never an interpolated one. A run resumed from it reproduces all later
+// states bit by bit.
 // layout.json names every column.
 #pragma once
 
@@ -24,7 +25,8 @@ class RecordingMismatch : public std::runtime_error {
 };
 
 /// Writes layout.json: names, units and meanings of the columns of all tables, and the times of frames.
-/// trajectory: columns of trajectory.csv. contacts: whether contacts are recorded. Throws std::system_error.
+/// trajectory: columns of trajectory.csv. contacts: whether the run records contacts. Throws
+/// std::system_error.
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
                   const std::vector<Column>& trajectory, bool contacts = false);
 
@@ -37,8 +39,8 @@ class RecordingWriter {
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
   void append(const State& state);
-  /// Writes all appended states to the files, so that they survive the end of the process; with to_disk, also
-  /// a power cut.
+  /// Writes all appended states to the files, so that the states survive a crash of the process. With
+  /// to_disk, the states survive a power cut too.
   void flush(bool to_disk = false);
   std::int64_t rows() const { return times_.rows(); }
   std::size_t pending_bytes() const;
@@ -66,10 +68,10 @@ class Recording {
   State state(std::int64_t row) const;
   /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
-  /// Between steps with error control, the state is that of a shorter step of order 8 from the previous
-  /// state, provided that a full step of that method leads to the next state; otherwise q is the quintic
-  /// interpolant of q, v and the accelerations. Times outside the recording give its first or last state.
-  /// Throws RecordingMismatch; std::out_of_range if the recording is empty.
+  /// With error control, the state between two steps is the result of a shorter step of dop853 (order 8)
+  /// from the previous state, if a full step of dop853 leads to the next state. Otherwise q is the quintic
+  /// interpolant of q, v and the accelerations, and v is linear. Times outside the recording give its first
+  /// or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
   State at(double time) const;
 
  private:

@@ -19,8 +19,8 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 /// Returns the columns of modes.npy, in order.
 std::vector<Column> mode_columns_of(const Model& model);
 
-/// The columns of modes.npy with the range of a state's rows in supports.npy: the first row and one past the
-/// last.
+/// Numbers of the two columns of modes.npy that give the rows of a state in supports.npy: its first row, and
+/// one past its last row.
 inline constexpr std::size_t kFirstCachedContact = 5, kEndOfCachedContacts = 6;
 /// Returns the columns of supports.npy, in order.
 std::vector<Column> contact_cache_columns();
@@ -29,8 +29,8 @@ std::vector<double> cached_contact_row(const CachedContact& contact);
 /// Reads a cached contact from a row of supports.npy. Returns false if an index is not an integer >= -1.
 [[nodiscard]] bool read_cached_contact(const double* row, CachedContact& contact);
 
-/// Computes the row of modes.npy for a state. end_of_cached_contacts: one past its last row in supports.npy.
-/// The last number of the row is a hash of all bits of the state.
+/// Computes the row of modes.npy for a state. end_of_cached_contacts: one past the last row of the state in
+/// supports.npy. The last number of the row is a hash of all bits of the state.
 void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row);
 
 /// Completes a state whose q, v and contact cache are set, from its row of modes.npy. n_limits: number of

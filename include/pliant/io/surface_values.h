@@ -1,4 +1,5 @@
-// The quantity of the vertices of a part's surface by which pictures colour it.
+// The values of a quantity (strain or displacement) at the vertices of a part's surface. Pictures colour the
+// surface by these values.
 #pragma once
 
 #include <optional>
@@ -10,10 +11,12 @@ namespace pliant {
 
 class SurfaceValues {
  public:
-  /// X: vertices at rest, m, body frame, 3 x n. triangles: three columns of X each.
+  /// X: vertices at rest, m, body frame, 3 x n. triangles: 3 x m; each column has the indices of three
+  /// columns of X.
   SurfaceValues(SurfaceQuantity quantity, Eigen::Matrix3Xd X, const Eigen::Matrix3Xi& triangles);
 
-  /// Returns the value of each vertex for vertices at p (m, body frame, 3 x n).
+  /// Returns the values of the n vertices at the positions p (m, body frame, 3 x n): strain (1), or
+  /// displacement (m).
   VecX<double> at(const Eigen::Matrix3Xd& p) const;
 
  private:

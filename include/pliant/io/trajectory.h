@@ -2,14 +2,14 @@
 // ends. One header line, one line per recorded state, numbers in the shortest form that reads back exactly.
 // Columns:
 //   t                                        s
-//   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene asks for it):
+//   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene requests it):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s, world; rad/s, body frame
 //     NAME.PARAMETER_dot                     rates of the dynamic parameters
 //     NAME.com.x y z                         centre of mass (m, world), if it is not the frame's origin
 //   track.NAME.x y z                         tracked points, m, world
-//   joint.NAME.force.x y z, joint.NAME.gap   N on its first side, world; m (joints only if parts are listed)
+//   joint.NAME.force.x y z, joint.NAME.gap   force on its first side, N, world; gap, m (only with parts)
 //   joint.NAME.torque.x y z                  N m about the joint, for joints that constrain rotation
 //   energy.kinetic gravity elastic springs total, work.KIND   J; energy.local with local deformation
 //   balance                                  J: energy.total - its value at time 0 - all works
@@ -33,12 +33,12 @@ class TrajectoryTable {
  public:
   static constexpr std::size_t kMaxParts = 100;
 
-  /// scene: provides the tracks. simulation: provides the model, its dynamics and the initial energy of the
-  /// balance. Both must outlive the table.
+  /// scene: provides the tracks. simulation: provides the model, its dynamics, and the initial energy for the
+  /// energy balance. Both must outlive the table.
   TrajectoryTable(const Scene& scene, const Simulation& simulation);
 
   std::vector<Column> columns() const;
-  /// Computes the numbers of a state, in the order of columns().
+  /// Computes the row of a state: one number for each of columns(), in the same order.
   void row(const State& state, std::vector<double>& numbers);
 
  private:

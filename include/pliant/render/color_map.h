@@ -1,7 +1,7 @@
-// The colour map for values in pictures, from dark violet over blue and green to yellow. It is perceptually
-// uniform, its lightness is monotonic, and it is readable with the common kinds of colour blindness. The
-// colours are those of viridis (N. J. Smith, S. van der Walt, E. Firing 2015, public domain, CC0) at every
-// tenth of the scale, interpolated in linear light.
+// The colour map for values in pictures, from dark violet over blue and green to yellow. Equal steps of the
+// scale look about equally different, the lightness increases along the scale, and the map is readable with
+// the common kinds of colour blindness. The map has the colours of viridis (N. J. Smith, S. van der Walt, E.
+// Firing 2015, public domain, CC0) at every tenth of the scale and interpolates them in linear light.
 #pragma once
 
 #include <array>

@@ -15,17 +15,17 @@
 
 namespace pliant {
 
-/// Makes the picture at any time of a recording: the parts, the tracks up to that time, and springs, rods and
-/// strings as thin lines with a dot at each end that is attached to the world. Camera, ground and the scale
-/// of values are equal in all frames of a run. Where the scene does not set them, they are computed from the
-/// whole recorded motion.
+/// Makes the picture at any time of a recording: the parts, the tracks up to that time, and springs, rods
+/// and strings as thin lines. Each point of a spring or a joint that is attached to the world is a dot. All
+/// frames of a run have the same camera, ground and scale of values. If the scene does not set these, they
+/// are computed from the whole recorded motion.
 class Film {
  public:
   /// scene, model, recording: must outlive the film. Throws RecordingMismatch, and std::out_of_range if the
   /// recording has no state.
   Film(const Scene& scene, const Model& model, const Recording& recording);
 
-  /// Returns the picture at a time (s); valid until the next call.
+  /// Returns the picture at a time (s). The reference is valid until the next call.
   const Picture& at(double time);
   const Camera& camera() const { return picture_.camera; }
 
@@ -33,7 +33,7 @@ class Film {
   /// A spring or a joint as it is drawn.
   struct Connector {
     std::vector<PlacedPoint> ends;  ///< two points, or one for a joint without a second point
-    bool line;                      ///< whether a line is drawn between the ends
+    bool line;                      ///< whether a line connects the ends
     const Joint* joint;             ///< nullptr for a spring
   };
   void build_tracks();
@@ -61,8 +61,8 @@ struct FilmSource {
 };
 
 /// Draws the given frames into an existing folder, as frame_000000.png and so on; frame i is at the time
-/// i / frame_rate (s). The size of the pictures is that of the scene. Throws as Film, Renderer and write_png
-/// do.
+/// i / frame_rate (s). The size of the pictures is that of the scene. Throws what Film, Renderer and
+/// write_png throw.
 void render_frames(const std::filesystem::path& folder, const FilmSource& source, double frame_rate,
                    const std::vector<std::int64_t>& frames, Progress& progress,
                    GlBackend backend = GlBackend::automatic);

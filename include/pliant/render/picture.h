@@ -1,5 +1,5 @@
-// The content of a picture as plain data, set again for every frame. Colours are sRGB with channels in [0,
-// 1].
+// The content of a picture as plain data, which is set again for every frame. Colours are sRGB with channels
+// in [0, 1].
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct Picture {
   struct Body {
     const TriangleMesh* mesh = nullptr;
     Eigen::Vector3f color = {0.8f, 0.8f, 0.8f};
-    const VecX<double>* values = nullptr;  ///< one for each vertex; with a scale, they set the colours
+    const VecX<double>* values = nullptr;  ///< one for each vertex; with a scale, values set the colours
   };
 
   /// The range of values of the colour map (color_map.h), shown as a bar at the right. Values outside have
@@ -30,7 +30,8 @@ struct Picture {
     double low = 0, high = 1;
   };
 
-  /// The path of a point, hidden behind bodies. A path of one point is drawn as a dot.
+  /// The path of a point in the world. Bodies in front of the path hide it. A path of one point is drawn as a
+  /// dot.
   struct Track {
     std::vector<Eigen::Vector3d> points;  ///< world, m
     Eigen::Vector3f color = {0.15f, 0.15f, 0.18f};
@@ -41,10 +42,11 @@ struct Picture {
   /// camera.
   struct Ground {
     bool shown = true;
-    double height = 0;  ///< z, m
-    /// Spacing of the grid, m; 0 chooses 1, 2 or 5 times a power of ten. Every fifth line is stronger.
+    double height = 0;  ///< z of the floor, m
+    /// Spacing of the grid, m. If it is 0, the renderer chooses 1, 2 or 5 times a power of ten. Every fifth
+    /// line is stronger.
     double spacing = 0;
-    Eigen::Vector3f color = {0.93f, 0.935f, 0.945f};  ///< under the full key light
+    Eigen::Vector3f color = {0.93f, 0.935f, 0.945f};  ///< colour under the full light, without shadows
     Eigen::Vector3f grid_color = {0.60f, 0.64f, 0.70f};
   };
 

@@ -11,22 +11,22 @@
 
 namespace pliant {
 
-/// Keeps its GL buffers between frames: for a body with the triangles of the previous frame only the vertices
-/// are sent. One thread at a time may draw with a renderer. Any number of renderers may exist.
+/// Keeps its GL buffers between frames: if a body has the same triangles as in the previous frame, only its
+/// vertices are sent to GL. One thread at a time may draw with a renderer. Any number of renderers may exist.
 class Renderer {
  public:
   static constexpr int kMaxSide = 8192;  ///< pixels
 
-  /// Opens a GL library; none is loaded before. width, height: pixels. Throws std::invalid_argument unless
-  /// both are in [1, kMaxSide], and std::runtime_error if no backend opens or none can draw a picture of this
-  /// size.
+  /// Opens a GL library. No GL library is loaded before the first renderer or context is constructed. width,
+  /// height: pixels. Throws std::invalid_argument unless both are in [1, kMaxSide], and std::runtime_error if
+  /// no backend opens or none can draw a picture of this size.
   Renderer(int width, int height, GlBackend backend = GlBackend::automatic);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws a picture. Throws std::invalid_argument that names the body, track or setting that is missing, out
-  /// of range or not finite, and std::runtime_error if GL fails.
+  /// Draws a picture and returns the image. Throws std::invalid_argument, which names the body, track or
+  /// setting that is missing, out of range or not finite, and std::runtime_error if GL fails.
   Image draw(const Picture& picture);
 
   int width() const;

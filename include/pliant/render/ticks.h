@@ -6,14 +6,14 @@
 
 namespace pliant {
 
-/// Returns 1, 2 or 5 times a power of ten, so that about five steps make the span (> 0).
+/// Returns the step of a scale: 1, 2 or 5 times a power of ten, so that about five steps fill the span (> 0).
 double tick_step(double span);
 
 struct Tick {
   double value;
   std::string label;  ///< with as many digits as the step needs
 };
-/// Returns the multiples of tick_step(high - low) in [low, high].
+/// Returns the multiples of tick_step(high - low) in [low, high], in increasing order; at most 12.
 std::vector<Tick> ticks(double low, double high);
 
 }  // namespace pliant

@@ -1,6 +1,6 @@
-// PNG with libpng, using the fastest compression and the Up filter: for rendered pictures they need a fifth
-// of the time of the defaults and give about a quarter more bytes. A picture is encoded in memory, then
-// written whole.
+// Writes PNG with libpng, the fastest compression and the Up filter. For rendered pictures these settings
+// need a fifth of the time of the defaults and give about a quarter more bytes. A picture is encoded in
+// memory and then written as a whole.
 #include <pliant/io/format/png.h>
 
 #include <csetjmp>

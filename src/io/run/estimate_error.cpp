@@ -13,14 +13,14 @@ namespace pliant {
 
 namespace {
 
-constexpr double kTighter = 10;  // ratio of the two tolerances
+constexpr double kTighter = 10;  // tolerance of the run / tolerance of its repetition
 
 /// Replaces a maximum by a larger value; NaN is kept.
 void raise_max(double& max, double value) {
   if (!(value <= max) && !std::isnan(max)) max = value;
 }
 
-/// Raises the differences of coordinates and velocities between two states.
+/// Updates the maxima in `error` with the differences of coordinates and velocities between two states.
 void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
@@ -38,8 +38,8 @@ void compare(const Model& model, const State& a, const State& b, ErrorEstimate& 
   }
 }
 
-/// Raises the differences of joint forces between two states, and the gaps of closed joints. work_a, work_b:
-/// results of evaluations at the states.
+/// Updates the maxima in `error` with the differences of joint forces between two states, and with the gaps
+/// of closed joints. work_a, work_b: results of evaluations at the states.
 void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<double>& work_a, const State& b,
                     const Workspace<double>& work_b, ErrorEstimate& error) {
   const Model& model = dynamics.model();
@@ -102,7 +102,8 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   ErrorEstimate error;
   error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
-  // The tolerance does not control the error of resting contacts of many bodies; there the step is halved.
+  // The tolerance does not control the error of resting contacts of many bodies, so the longest contact step
+  // is halved.
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();

@@ -23,7 +23,7 @@ class NamedRows {
     else if (joints_ == kShown + 1)
       names_ += " and others";
   }
-  /// "HEADING: N rows of M joints, NAMES"; empty without rows.
+  /// Returns the text "HEADING: N rows of M joints, NAMES"; empty without rows.
   std::string text(const std::string& heading) const {
     if (rows_ == 0) return {};
     return heading + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
@@ -37,8 +37,8 @@ class NamedRows {
 /// Relative size below which a difference of two contributions is rounding error.
 constexpr double kCancelled = 1e-9;
 
-/// Returns the number of rows of a joint whose Jacobian is zero: the length of a rod whose ends coincide, or
-/// whose ends are on one part that does not deform between them.
+/// Returns the number of rows of a joint whose row of C_q is zero. An example is a rod whose ends coincide,
+/// or whose ends are on one part that does not deform between them.
 int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
   int count = 0;
   for (int r = 0; r < joint.rows; ++r) {
@@ -68,7 +68,8 @@ double size_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   return impulse.impulse.force.norm() + impulse.impulse.torque.norm() / joint.length;
 }
 
-/// Returns an impulse as text, "2 N s and 0.1 N m s", without components that are rounding errors.
+/// Returns an impulse as text, for example "2 N s and 0.1 N m s", without components that are rounding
+/// errors.
 std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   const double size = size_of(impulse, joint), force = impulse.impulse.force.norm(),
                torque = impulse.impulse.torque.norm();
@@ -80,8 +81,8 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 }  // namespace
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
-  // Redundant rows agree with the rows that imply them up to this fraction of the acceleration that closes a
-  // gap of the joint's length.
+  // Largest disagreement of a redundant row with the rows that imply it, relative to the acceleration that
+  // the joint requires plus the one that closes a gap of the joint's length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();

@@ -59,7 +59,7 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 int automatic_threads(Scene& scene) {
   // Lower bounds of the cost of an evaluation in microseconds, measured with bench/step_bench: per part, per
   // mass point and parameter, and per strain point. Dispatching work to the thread pool and waiting for it
-  // costs about 10.
+  // takes about 10 microseconds.
   constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
@@ -197,8 +197,8 @@ void Run::check_resumable() const {
   if (scene_->tolerance == 0) require_same("the step", record_.asked_step, scene_->step);
 }
 
-/// Sets the simulation to the last recorded state that an uninterrupted run would reach. keep: number of
-/// recorded states; it becomes the number of those that an uninterrupted run would record.
+/// Sets the simulation to the last recorded state that an uninterrupted run would reach. keep: on call, the
+/// number of recorded states; on return, the number of these that an uninterrupted run would record.
 void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
   // With error control, the last step may have been shortened by the end of the run. If the new end is later,
   // that step is repeated.
@@ -251,7 +251,7 @@ void Run::note(const std::string& text) {
   progress_->note(text);
 }
 
-/// Notes redundant constraints, once for each set of acting joints.
+/// Notes redundant constraints, at most once for each change of the set of acting joints.
 void Run::note_redundancy() {
   std::vector<bool> acting;
   for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);

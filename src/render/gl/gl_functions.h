@@ -100,7 +100,8 @@ inline constexpr unsigned kDepthBufferBit = 0x0100;
   X(viewport, glViewport, void, (Int, Int, Size, Size))
 
 struct Functions {
-  /// Throws std::runtime_error that names the entry point that the context does not have.
+  /// Looks up all entry points. Throws std::runtime_error, which names the entry point that the context does
+  /// not have.
   explicit Functions(const GlContext& context);
 
 #define PLIANT_GL_MEMBER(member, name, result, arguments) result(*member) arguments = nullptr;

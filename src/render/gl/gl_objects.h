@@ -29,7 +29,8 @@ using Renderbuffer = Object<&Functions::gen_renderbuffers, &Functions::delete_re
 /// A linked program in GLSL 330. Each stage begins with the shared text of shaders.h.
 class Program {
  public:
-  /// fragment_start: text before fragment_text. Throws std::runtime_error with the message of the compiler.
+  /// name: name of the program in messages. fragment_start: text that is placed before fragment_text. Throws
+  /// std::runtime_error with the message of the GLSL compiler.
   Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text,
           const char* fragment_start = "");
   ~Program();

@@ -10,12 +10,12 @@ namespace pliant {
 
 struct GlContext::Platform {
   virtual ~Platform() = default;
-  virtual void make_current() = 0;  ///< throws std::runtime_error
+  virtual void make_current() = 0;  ///< throws std::runtime_error if that fails
   virtual void release() = 0;
   virtual void* function(const char* name) const = 0;
 };
 
-// Each opens a context and throws std::runtime_error with the reason if it cannot.
+// Each function opens a context. If that fails, it throws std::runtime_error with the reason.
 std::unique_ptr<GlContext::Platform> open_osmesa();
 std::unique_ptr<GlContext::Platform> open_egl_surfaceless();
 std::unique_ptr<GlContext::Platform> open_egl_software_device();

@@ -1,5 +1,5 @@
-// Shading in linear light. The framebuffer stores its square root (see resolve.h), which is cheaper than sRGB
-// and equally accurate in dark areas.
+// Shading in linear light. The framebuffer stores the square root of the light (see resolve.h), which is
+// cheaper than sRGB and equally accurate in dark areas.
 #include "shaders.h"
 
 namespace pliant::shaders {
@@ -226,9 +226,9 @@ out vec4 result;
 void main() { result = encode(background(gl_FragCoord.y)); }
 )";
 
-// One instance for each segment: a rectangle on the screen around it, larger by half the line width and one
-// sample on each side. The segment is moved slightly towards the eye, so that a surface does not hide a track
-// on it.
+// Each instance draws one segment as a rectangle on the screen. The rectangle extends half the line width
+// plus one sample beyond the segment on each side. The segment is moved slightly towards the eye, so that a
+// surface does not hide a track on it.
 const char* const kTrackVertex = R"(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;

@@ -13,10 +13,10 @@ extern const char* const kDepthFragment;
 extern const char* const kContactVertex;  ///< share of the sky that is visible from each point of the ground
 extern const char* const kContactFragment;
 extern const char* const kBodyVertex;
-extern const char* const kOwnColor;  ///< albedo of a body; before kBodyFragment
+extern const char* const kOwnColor;  ///< one albedo for the whole body; placed before kBodyFragment
 extern const char* const kBodyFragment;
-extern const char* const kLeveledVertex;  ///< of a body coloured by values
-extern const char* const kLevelColor;     ///< albedo of such a body; before kBodyFragment
+extern const char* const kLeveledVertex;  ///< vertices of a body coloured by values
+extern const char* const kLevelColor;  ///< albedo of a body coloured by values; placed before kBodyFragment
 extern const char* const kGroundVertex;
 extern const char* const kGroundFragment;
 extern const char* const kBackgroundVertex;

@@ -1,5 +1,5 @@
-// A user's program. Its unused parameters would give warnings under pliant's own flags, which must not reach
-// the client; the options for the layout of Eigen's types and for rounding must reach it.
+// A user's program. The warning flags of pliant must not reach the program: they would report its unused
+// parameters. The options for the layout of Eigen's types and for rounding must reach the program.
 #include <cmath>
 
 #include <pliant/math/scalar/dual.h>

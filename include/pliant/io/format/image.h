@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Rows from top to bottom, pixels from left to right, three bytes (red, green, blue; sRGB) a pixel, no
-/// padding.
+/// The rows are from top to bottom, and the pixels of a row from left to right. A pixel has three bytes
+/// (red, green, blue; sRGB). There is no padding.
 struct Image {
   int width = 0;
   int height = 0;

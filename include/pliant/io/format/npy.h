@@ -15,16 +15,16 @@ inline constexpr int kNpyVector = -1;
 /// Writes a table. All members throw std::system_error with path and reason.
 class NpyWriter {
  public:
-  /// Creates a file; throws if it exists. columns: >= 0 (shape (n, columns)) or kNpyVector.
+  /// Creates a file; throws if the file exists. columns: >= 0 (shape (n, columns)) or kNpyVector.
   static NpyWriter create(const std::filesystem::path& path, int columns);
   /// Opens a file and removes all rows after the first `rows` rows. Throws std::runtime_error if the file is
-  /// not such a table or has fewer rows.
+  /// not a table with these columns or has fewer rows.
   static NpyWriter resume(const std::filesystem::path& path, int columns, std::int64_t rows);
   ~NpyWriter();
   NpyWriter(NpyWriter&& other) noexcept;
   NpyWriter& operator=(NpyWriter&&) = delete;
 
-  /// Appends one row with one number per column. It stays in memory until flush().
+  /// Appends one row, with one number per column. The row stays in memory until flush().
   void append(const double* row);
   /// Writes the pending rows, then the header with their number.
   void flush();
@@ -60,7 +60,8 @@ class NpyReader {
   std::int64_t rows() const { return rows_; }
   /// Returns the number of columns, or kNpyVector.
   int columns() const { return columns_; }
-  /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()).
+  /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()) to `numbers`, row after row.
+  /// Throws std::out_of_range if there are no such rows.
   void read(std::int64_t row, double* numbers, std::int64_t count = 1) const;
 
  private:

@@ -1,5 +1,5 @@
-// Binary PLY files of a frame. Each vertex has the colour and the number of its mesh, and one normal (the
-// mean over its triangles), so that closed meshes stay closed.
+// Binary PLY files of a frame. Each vertex has the colour and the index of its mesh, and one normal: the
+// normalised sum of the normals of its triangles. One normal per vertex keeps closed meshes closed.
 #pragma once
 
 #include <filesystem>

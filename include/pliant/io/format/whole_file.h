@@ -9,12 +9,12 @@
 
 namespace pliant {
 
-/// Whether a file must reach the disk before it is renamed: yes survives a power cut; no is faster and
-/// survives the end of the process.
+/// Whether a file must reach the disk before it is renamed. With yes, the file survives a power cut. no is
+/// faster, and the file survives a crash of the process.
 enum class Durable { no, yes };
 
 /// A file that is written piece by piece. All members throw std::system_error with path and reason (for a
-/// full disk also the needed and free bytes). The target is then unchanged, and the temporary file is
+/// full disk also the needed and free bytes). In this case the target is unchanged and the temporary file is
 /// removed.
 class WholeFile {
  public:

@@ -1,5 +1,5 @@
-// The identity of the program that wrote a run. A run is resumed only by the build that began it, because
-// another build may give other bits.
+// The identity of the program that wrote a run. Only the build that began a run can resume it, because the
+// results of another build may differ in their last bits.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// The error estimate of a run. The run is repeated more accurately and compared at every recorded time: with
-// a tenth of its tolerance and half the longest contact step, or with half its fixed step.
+// The error estimate of a run. The run is repeated with a tenth of its tolerance and half the longest
+// contact step, or with half its fixed step. The two runs are compared at every recorded time.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace pliant {
 
 /// The largest absolute differences between a run and its repetition, over all parts and recorded times.
 struct ErrorEstimate {
-  double place = 0;                ///< position of body frames, m
-  double rotation = 0;             ///< rad
+  double place = 0;                ///< position of the frames of parts, m
+  double rotation = 0;             ///< rotation of the frames, rad
   double length = 0;               ///< parameters that are lengths, m
   double parameter = 0;            ///< other parameters, rad or 1
   double displacement = 0;         ///< local coordinates (nodes, polynomials or modes), in their unit
-  double velocity = 0;             ///< of body frames, m/s
-  double angular_velocity = 0;     ///< rad/s
+  double velocity = 0;             ///< velocity of the frames, m/s
+  double angular_velocity = 0;     ///< angular velocity of the frames, rad/s
   double energy = 0;               ///< total energy, J
-  double joint_force = 0;          ///< N
-  double joint_torque = 0;         ///< N m
+  double joint_force = 0;          ///< force of a joint, N
+  double joint_torque = 0;         ///< torque of a joint, N m
   double gap = 0;                  ///< largest gap of a closed joint of the run, m
-  double tolerance = 0, step = 0;  ///< of the repetition; one of them is 0
+  double tolerance = 0, step = 0;  ///< tolerance and fixed step (s) of the repetition; one of them is 0
 };
 
 /// Throws std::invalid_argument if the scene has the smallest possible tolerance, so that no more accurate
@@ -31,8 +31,8 @@ struct ErrorEstimate {
 void require_better_run(const Scene& scene);
 
 /// Repeats a run more accurately and returns the differences. integrator: name of the method of the run;
-/// step: its fixed step, s; run: its recording. Throws as the steps of a simulation, RecordingMismatch, and
-/// as require_better_run().
+/// step: its fixed step, s; run: its recording. threads: number of threads. Throws what Simulation::step()
+/// and require_better_run() throw, and RecordingMismatch.
 ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
                              int threads, Progress& progress);
 

@@ -9,24 +9,25 @@
 namespace pliant {
 
 /// Returns notes on the constraint rows at the state of the simulation that are redundant, that contradict
-/// other rows, or that have no direction; empty if there are none. Redundant rows change no motion; the
-/// constraint forces are those without them.
+/// other rows, or whose row of C_q is zero (no direction); empty if there are none. Redundant rows do not
+/// change the motion; the constraint forces are computed without them.
 std::vector<std::string> redundancy_notes(const Simulation& simulation);
 
 /// Returns a note with the number of open joints and the widest gap, or an empty text if all joints are
 /// closed.
 std::string open_joints_note(const Simulation& simulation);
 
-/// Returns notes on the impulses of simulation.engage_impulses() from number `first` on: for joints that
-/// engage, the largest impulse of each time; for paths whose velocity jumps, the first impulse of each joint.
+/// Returns notes on the impulses of simulation.engage_impulses() from index `first` on. For joints that
+/// engage, a note has the largest impulse at each time. For prescribed paths whose velocity jumps, it has
+/// the first impulse of each joint.
 std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first);
 
 /// Returns the solvers of the joints: "blocks", "augmented", "blocks and augmented", or an empty text.
 std::string solver_note(const Model& model);
 
-/// Widest gaps at the state of a simulation, m; 0 if there is no such joint. With projection, a joint is
-/// closed if its mode is; without projection, a joint with a gap of at most kClosedGap lengths of its smaller
-/// part is closed too.
+/// Widest gaps of the closed and of the open joints at the state of a simulation, m; 0 if there is no such
+/// joint. A joint is closed if its mode is JointMode::closed. Without projection, a joint whose gap is at
+/// most kClosedGap times the size of its smaller part is closed too.
 struct Gaps {
   double closed = 0, open = 0;
 };

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Thrown by Progress::advance() to end a task early; finished files remain.
+/// Thrown by Progress::advance() to end a task early. Files that are already finished remain.
 class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -35,9 +35,10 @@ struct RunOptions {
 /// which may be changed before the run is constructed.
 class Run {
  public:
-  /// Prepares the model, then creates and locks the folder and records the first state; or, resuming, reads
-  /// the folder. Throws std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming with
-  /// another scene, build, step, method or frame rate), std::system_error. The scene must outlive the run.
+  /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
+  /// run locks and reads the folder. Throws std::invalid_argument (a bad scene), OutputRefused,
+  /// RecordingMismatch (resuming with another scene, build, step, method or frame rate), std::system_error.
+  /// The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
@@ -49,12 +50,12 @@ class Run {
   bool simulate();
 
   /// Performs a task after the simulation and records its wall time and files in run.json: write("meshes",
-  /// {"meshes/frame_*.obj"}, ...).
+  /// {"meshes/frame_*.obj"}, task).
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
-  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json; a stage as in
-  /// write().
+  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json. Records the wall
+  /// time as write() does.
   const ErrorEstimate& estimate_error();
 
   /// Writes the final status to run.json: complete, or stopped with a message.
@@ -65,13 +66,13 @@ class Run {
   const FrameSchedule& schedule() const { return schedule_; }
   const std::filesystem::path& folder() const { return folder_->path(); }
   const RunRecord& record() const { return record_; }
-  /// Returns the states recorded so far.
+  /// Opens the recording for reading, with the states recorded so far.
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
   /// Writes the first state and the files of a new run.
   void begin_recording();
-  /// Checks that the recorded run fits to the scene, and sets the simulation to its last state.
+  /// Checks that the recorded run belongs to this scene, and sets the simulation to the last recorded state.
   void resume_recording();
   void check_resumable() const;
   void set_last_state(const Recording& recorded, std::int64_t& keep);
@@ -84,7 +85,7 @@ class Run {
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
-  /// Writes trajectory.csv and, if the scene asks for them, the tables of contacts.
+  /// Writes trajectory.csv and, if the scene requests them, the tables of contacts.
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
@@ -101,16 +102,16 @@ class Run {
   FrameSchedule schedule_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RecordingWriter> writer_;
-  std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
+  std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene requests them
   RunRecord record_;
-  double recorded_time_ = -1;  // of the last recorded state, s
+  double recorded_time_ = -1;  // time of the last recorded state, s
   // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
   // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.
   std::size_t reported_impulses_ = 0;
   std::set<std::string> reported_redundant_, reported_turned_;
   std::set<TouchingPair> reported_overlaps_;
   std::vector<bool> reported_acting_;
-  StepCounters earlier_steps_;  // of earlier sessions of a resumed run
+  StepCounters earlier_steps_;  // counters of earlier sessions of a resumed run
   Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
@@ -120,7 +121,7 @@ class Run {
 FrameSchedule schedule_of(const Scene& scene);
 
 /// Returns the number of threads that the parts of a scene can use, at most that of the machine. Results do
-/// not depend on it. Prepares the parts and throws as Part::prepare().
+/// not depend on it. Prepares the parts, and throws what Part::prepare() throws.
 int automatic_threads(Scene& scene);
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ inline constexpr int kRecordingVersion = 3;                ///< version of layou
 inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
-inline constexpr const char* kModesFile = "modes.npy";  ///< the other entries of a state
+inline constexpr const char* kModesFile = "modes.npy";  ///< entries of a state besides t, q and v
 inline constexpr const char* kContactCacheFile =
     "supports.npy";  ///< the contact cache of a state: contacts for the warm start of the next step
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
@@ -26,7 +26,7 @@ inline constexpr const char* kJointImpulsesTable = "joint_impulses.csv";
 inline constexpr const char* kLockFile = "pliant.lock";  ///< exists while a run uses the folder
 inline constexpr const char* kMeshFolder = "meshes";
 inline constexpr const char* kFrameFolder = "frames";
-inline constexpr const char* kMaterialFile = "parts.mtl";  ///< in kMeshFolder: colours
+inline constexpr const char* kMaterialFile = "parts.mtl";  ///< colours of meshes; in kMeshFolder
 
 /// Returns the file name of a frame, "frame_000012.png": stem, number with at least six digits, extension.
 std::string frame_name(const std::string& stem, std::int64_t number, const std::string& ending);

@@ -20,20 +20,21 @@ struct RunRecord {
   enum class Status { running, complete, stopped, failed };
 
   Status status = Status::running;
-  std::string message;  ///< reason of stopped or failed
+  std::string message;  ///< why the run was stopped or failed
 
   // Options.
   BuildInfo build;
   std::vector<std::string> command;  ///< the command line
-  std::string scene;                 ///< name
+  std::string scene;                 ///< name of the scene
   std::string scene_file;
   std::vector<std::string> overrides;  ///< assignments "/json/pointer=value" applied to the scene
   std::uint64_t scene_hash = 0;
   double end = 0;         ///< requested end time, s
   double asked_step = 0;  ///< requested fixed step, s; 0 with a tolerance
-  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; or 0
+  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; 0
+                    ///< with a tolerance
   double tolerance = 0;                      ///< bound on the error of a step; 0: fixed steps
-  double frame_rate = 0;                     ///< 1/s
+  double frame_rate = 0;                     ///< frames per second, 1/s
   std::string integrator, asked_integrator;  ///< method in use; requested method, which may be kAutomatic
   std::string joint_solver;                  ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
@@ -41,10 +42,11 @@ struct RunRecord {
   std::string graphics;       ///< graphics library of the pictures; empty without pictures
 
   // Progress.
-  std::int64_t steps = 0, steps_done = 0;  ///< of the whole run (0 with a tolerance); done so far
-  double time = 0;                         ///< of the last state, s
-  std::int64_t states = 0;                 ///< number of recorded states
-  int resumed = 0;                         ///< number of times the run was resumed
+  /// Number of steps of the whole run (0 with a tolerance), and of steps done so far.
+  std::int64_t steps = 0, steps_done = 0;
+  double time = 0;          ///< time of the last state, s
+  std::int64_t states = 0;  ///< number of recorded states
+  int resumed = 0;          ///< number of times the run was resumed
 
   // Cost, summed over all sessions of a resumed run.
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, s
@@ -61,11 +63,12 @@ struct RunRecord {
   double max_depth = 0;    ///< largest contact depth at a recorded state / size of the smaller part
   double open_gap = 0;     ///< widest gap of an open joint at the last state, m
   int asleep = 0;          ///< number of sleeping parts at the last state
-  std::optional<ErrorEstimate> error;  ///< if requested
+  std::optional<ErrorEstimate> error;  ///< error estimate, if requested
   std::vector<std::string> held;       ///< parameters without inertia, which were kept constant
   std::vector<std::string> skipped;    ///< computations that the scene did not need
   std::vector<std::string> notes;      ///< warnings and automatic choices
-  std::vector<std::string> files;  ///< written files, relative to the folder; series as "meshes/frame_*.obj"
+  /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
+  std::vector<std::string> files;
 
   /// Adds to the wall time of a stage.
   void add_seconds(const std::string& stage, double seconds);

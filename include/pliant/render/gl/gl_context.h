@@ -1,6 +1,6 @@
 // An OpenGL 3.3 core context without a window. Two libraries can provide one: OSMesa (Mesa before 25.1) and
-// EGL (without a surface, or on Mesa's software device). They are opened at run time, when a context is
-// requested.
+// EGL (without a surface, or on Mesa's software device). These libraries are opened at run time, when a
+// context is requested.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ enum class GlBackend {
 
 class GlContext {
  public:
-  /// Throws std::runtime_error that lists the backends tried, the reason of each failure and the packages to
-  /// install.
+  /// Opens a context. Throws std::runtime_error, which lists the backends that were tried, the reason of
+  /// each failure and the packages to install.
   explicit GlContext(GlBackend backend = GlBackend::automatic);
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -38,7 +38,7 @@ class GlContext {
 
   /// Returns the address of a GL entry point; nullptr if there is none with that name.
   void* function(const char* name) const;
-  /// "OSMesa", "EGL surfaceless" or "EGL software device".
+  /// Returns "OSMesa", "EGL surfaceless" or "EGL software device".
   const std::string& backend() const { return backend_; }
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION
@@ -52,14 +52,15 @@ class GlContext {
 
 /// One backend and the result of opening it.
 struct GlProbe {
-  std::string name;  ///< as GlContext::backend()
+  std::string name;  ///< see GlContext::backend()
   bool opened = false;
-  std::string reason;    ///< reason of the failure; empty if it opened
+  std::string reason;    ///< reason of the failure; empty if the backend opened
   std::string renderer;  ///< GL_RENDERER
   std::string version;   ///< GL_VERSION
 };
 
-/// Tries every backend in the order of GlBackend::automatic. Opens the libraries; a missing one is no error.
+/// Tries every backend in the order of GlBackend::automatic and returns one result per backend. Opens the
+/// libraries; a missing library is no error.
 std::vector<GlProbe> probe_gl_backends();
 
 }  // namespace pliant
