@@ -22,7 +22,7 @@ struct Problem {
   const char* name;
   std::function<void(MultiBody&)> build;
   double end;
-  int steps;  ///< of the longest step of a method of order 4; other methods use more or fewer
+  int steps;  ///< unit of the number of steps: each order of a method uses a multiple or a fraction
 };
 
 /// Two links, one hanging from the other, both stretching.
@@ -104,7 +104,7 @@ const std::vector<Problem> kProblems{
     {"a ring of links", ring, 0.4, 16},
     {"a rubber shell", shell, 0.04, 16}};
 
-/// States and joint forces at the quarters of a run.
+/// States and joint forces at the ends of the four quarters of a run.
 struct Samples {
   VecX<double> q, v, lambda;
 };
