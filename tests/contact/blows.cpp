@@ -192,8 +192,8 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
 
 TEST_CASE("a ball with a dynamic height rebounds from an inelastic impact by the closed form", "[contact]") {
   // The impact stops the pole, whose velocity is u = c_dot - a3_dot. An impulse p changes u by
-  // (1 / m + 1 / (m / 5)) p, so that a sixth of the energy is lost. Then c = a3 oscillates with the mass m +
-  // m / 5 for half a period, and the ball leaves with 5/6 of the speed.
+  // (1 / m + 1 / (m / 5)) p, so that a sixth of the energy is lost. Then c = a3 oscillates with the mass
+  // m + m / 5 for half a period, and the ball leaves with 5/6 of the speed.
   const double speed = 1, radius = 0.1, stiffness = 2000, height = 0.0203;
   for (const std::string method : {"semi_implicit_euler", "rk4", "implicit_midpoint", "esdirk",
                                    "linearly_implicit", "dormand_prince", "dop853"}) {

@@ -197,8 +197,8 @@ TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no
   // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. If
   // 3 mu sin cos > 1 + 3 cos^2, no motion with finite forces obeys Coulomb's law; if the rod also rotates
   // away from the floor, more than one motion does. The solution is an impulse without a collision: it stops
-  // the tip, which slides with the speed v, at once. Its components along and normal to the floor are m v (1
-  // + 3 cos^2, 3 sin cos) / 4.
+  // the tip, which slides with the speed v, at once. Its components along and normal to the floor are
+  // m v (1 + 3 cos^2) / 4 and m v 3 sin cos / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})

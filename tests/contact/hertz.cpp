@@ -26,8 +26,8 @@ constexpr double kStiff = 1 / (1 - kNu * kNu);
 /// is the distance by which its centre of mass approaches the plane. For small forces the solution tends to
 /// that of Hertz's half space: F = 4/3 E* sqrt(R) sag^(3/2), a^2 = R sag with the contact radius a. Here
 /// pressures on rings about the pole balance the body force. Their displacements are sums over Legendre
-/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964: at r = 1, u_r = [A
-/// (n+1)(n-2+4 nu) + B n] P_n and u_theta = [A (n+5-4 nu) + B] dP_n/dtheta).
+/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964). At r = 1 they are
+///   u_r = [A (n+1)(n-2+4 nu) + B n] P_n,   u_theta = [A (n+5-4 nu) + B] dP_n/dtheta.
 struct PressedBall {
   double sag = 0, contact = 0;  ///< the approach, and the radius of the contact
 
@@ -65,8 +65,8 @@ struct PressedBall {
       const Array two_before = before;
       next(n, edge, before, at);
       next(n, x, before_x, at_x);
-      const Array rest =
-          0.5 * (at - two_before);  // (2 n + 1) / 2 times the integral of P_n from -1 to the edge
+      // (2 n + 1) / 2 times the integral of P_n from -1 to the edge
+      const Array rest = 0.5 * (at - two_before);
       u += along.matrix() * (rest.head(rings) - rest.tail(rings)).matrix().transpose();
     }
     const Array weight = 2 * kPi * (edge.head(rings) - edge.tail(rings)) * x;

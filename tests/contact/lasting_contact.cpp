@@ -136,8 +136,8 @@ TEST_CASE("a resting stack stays exactly at rest, in steps limited by the free f
       CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
       CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
     }
-    CHECK(simulation.step_counters().steps <
-          120);  // g h^2 / 2 is limited to 0.4 times the box's height, 0.2 m
+    // g h^2 / 2 is limited to 0.4 times the height of a box, 0.2 m.
+    CHECK(simulation.step_counters().steps < 120);
     // Resting contacts alone need no step doubling.
     CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);
   }

@@ -127,7 +127,7 @@ TEST_CASE("a balloon and a rigid box collide: momenta are conserved, without pen
   CHECK(after.energy() < before.energy());
 }
 
-TEST_CASE("balloons on strings that collide: the strings stay taut", "[contact][joints][long]") {
+TEST_CASE("balloons on strings collide, and the strings do not stretch", "[contact][joints][long]") {
   MultiBody body;
   body.contact.active = true;
   Part& left = balloon(body, "left", {-0.3, 0, -0.4});

@@ -140,7 +140,8 @@ TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / 5k) and ke
   }
 }
 
-TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>)", "[motion]") {
+TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>), the mean of zeta = z / a3 squared",
+          "[motion]") {
   struct Body {
     bool shell;
     double eps, mean_square;

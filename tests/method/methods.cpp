@@ -1,5 +1,5 @@
 // All methods of integration: their orders on smooth problems with and without joints, at several times of a
-// run; the invariants of the implicit midpoint rule; the step lengths of the stiff method.
+// run; the invariants of the implicit midpoint rule; the step lengths of the stiff method, ESDIRK.
 #include "catch.h"
 
 #include <cmath>
@@ -156,7 +156,7 @@ TEST_CASE("every method has its order on smooth motion, free, with joints and wi
       CAPTURE(q, v, lambda);
       CHECK(test::observed_order(q) > min_order);
       CHECK(test::observed_order(v) > min_order);
-      // The order of the forces appears late, so only the last two errors count.
+      // Forces reach their order only at small steps, so that only the last two errors count.
       if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > min_order);
     }
   }

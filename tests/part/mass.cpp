@@ -122,7 +122,7 @@ TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[m
     CHECK(std::abs(now / (xx * mean) - 1) <= 1e-12L);
     // With mu = 1, M(eps1, eps1) = int ((x^2 + y^2) ln^2|cos u| + z^2 ln^2|sin u|) dV. The means of the
     // squared logarithms are second derivatives of the Beta function.
-    // Returns the mean of ln^2|cos u| for the weight cos^(2p-1) sin^(2q-1).
+    // log_square returns the mean of ln^2|cos u| for the weight cos^(2p-1) sin^(2q-1).
     auto log_square = [&](long double p, long double q) {
       const long double first = (test::digamma(p) - test::digamma(p + q)) / 2;
       const long double h = 1e-3L;

@@ -132,8 +132,8 @@ TEMPLATE_LIST_TEST_CASE("derivatives by dual numbers in double and in long doubl
   constexpr int K = shape_size<Shape>;
   Draws draws(2);
   test::Worst worst;
-  for (double eps :
-       {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {  // the extreme exponents are allowed as frozen ones only
+  // The extreme exponents are allowed as frozen ones only.
+  for (double eps : {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {
     const ShapeVec<Shape, double> a = with_exponents<Shape>(draw_parameters<Shape>(draws), eps);
     const double size = size_of<Shape>(a);
     for (const Material<double>& m : test_points<Shape>(draws)) {

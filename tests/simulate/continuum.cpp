@@ -136,7 +136,8 @@ TEST_CASE("the amplitude of small motion decays at the rate beta omega^2 / 2", "
   CHECK(std::log(start / simulation.ledger().energy()) == Approx(beta * omega2 * time).epsilon(2e-2));
 }
 
-TEST_CASE("jvp of an elastic part agrees with finite differences", "[continuum][long]") {
+TEST_CASE("the Jacobian-vector product of an elastic part agrees with finite differences",
+          "[continuum][long]") {
   for (const double beta : {0.0, 3e-3}) {
     MultiBody body;
     rubber(body, "neo_hookean", beta);

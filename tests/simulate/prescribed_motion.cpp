@@ -130,7 +130,7 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
   }
   CHECK(impulse[2] == Approx(m * (kG + 2) * h).epsilon(1e-2));
   CHECK(work(simulation, Work::contact) == Approx(m * (kG + 0.5 * 4)).epsilon(2e-3));
-  // The position is available for any state.
+  // The model also gives the position of a part with prescribed motion, at the time of the state.
   CHECK(simulation.model().position(simulation.state(), 0)[2] == Approx(0.95));
 }
 
