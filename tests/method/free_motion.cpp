@@ -140,7 +140,7 @@ TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / 5k) and ke
   }
 }
 
-TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>), the mean of zeta = z / a3 squared",
+TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m s), where s is the mean of (z / a3)^2",
           "[motion]") {
   struct Body {
     bool shell;
