@@ -1,5 +1,6 @@
-// Impacts of parts with dynamic global parameters: velocities and energy after an impact obey the inelastic
-// law, the parameters receive a part of the energy, and pairs conserve their momenta.
+// Impacts of parts with dynamic global parameters. Velocities and energy after an impact obey the inelastic
+// law: the relative velocity at the contact point becomes zero (its normal component only, if the contact
+// slides). The parameters receive a part of the energy, and pairs conserve their momenta.
 #include "catch.h"
 
 #include <cmath>
@@ -25,17 +26,17 @@ namespace {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// The first impact of a model: the state and the ledger just before it, as without contact, and just after
-/// it.
+/// The first impact of a model. `before` and `ledger_before` are from a run without contact to the time of
+/// the impact; `after` and `ledger_after` are just after the impact.
 struct Impact {
   State before, after;
   Ledger ledger_before, ledger_after;
   ContactRecord record;
   MatX<double> M;   ///< 1/2 v^T M v is the kinetic energy at the impact
-  MatX<double> Jc;  ///< of the relative velocity along the normal and two tangents
+  MatX<double> Jc;  ///< Jc v is the relative velocity at the contact, along the normal and two tangents
 };
 
-/// Computes M of a state from the kinetic energies of unit velocities and of sums of two of them.
+/// Computes M of a state from the kinetic energies of unit velocities and of sums of two unit velocities.
 MatX<double> mass_matrix(const Simulation& simulation) {
   const Dynamics& dynamics = simulation.dynamics();
   State state = simulation.state();
@@ -53,7 +54,8 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// Adds the derivative dx/dv of a material point of a part, world frame: (I, -R [p]x, R J).
+/// Adds `sign` times the derivative of the velocity (world frame) of the contact point of one side to L, with
+/// respect to v: its columns are (I, -R [p]x, R J). A side without coordinates adds nothing.
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;
@@ -110,7 +112,7 @@ Impact first_impact(const Build& build) {
   return impact;
 }
 
-/// Tumbling parts with dynamic parameters.
+/// The kinds of parts that `soft` adds. All have dynamic parameters.
 const std::vector<std::string> kKinds{"sizes", "bent", "squarish", "twisted"};
 Part& soft(MultiBody& body, const std::string& name, const std::string& kind, double density = 1000) {
   if (kind == "sizes") {
@@ -160,7 +162,7 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
                            Y = impact.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
         const VecX<double> u = Jc * impact.before.v, u_after = Jc * impact.after.v;
         REQUIRE(u[0] < -1);
-        // The impulse that stops the relative motion; with sliding, the impulse that acted.
+        // The impulse that stops the relative motion; for the sliding contact, the impulse that acted.
         VecX<double> p = -Nc.ldlt().solve(u);
         if (mu == 0.03) {
           const Contact& contact = impact.record.contacts[0];
@@ -189,8 +191,9 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
 }
 
 TEST_CASE("a ball with a dynamic height rebounds from an inelastic impact by the closed form", "[contact]") {
-  // The pole stops, u = c_dot - a3_dot with N = 1 / m + 1 / (m / 5): a sixth of the energy is lost. Then c =
-  // a3 oscillates with the mass m + m / 5 for half a period, and the ball leaves with 5/6 of the speed.
+  // The impact stops the pole, whose velocity is u = c_dot - a3_dot. An impulse p changes u by
+  // (1 / m + 1 / (m / 5)) p, so that a sixth of the energy is lost. Then c = a3 oscillates with the mass
+  // m + m / 5 for half a period, and the ball leaves with 5/6 of the speed.
   const double speed = 1, radius = 0.1, stiffness = 2000, height = 0.0203;
   for (const std::string method : {"semi_implicit_euler", "rk4", "implicit_midpoint", "esdirk",
                                    "linearly_implicit", "dormand_prince", "dop853"}) {
@@ -244,7 +247,7 @@ Part& random_part(MultiBody& body, const std::string& name, int kind, Draws& dra
   return part;
 }
 
-/// Adds two such parts that collide off centre with spin.
+/// Adds two parts of `random_part` that spin and collide off centre.
 void random_pair(MultiBody& body, int kind, int other, double mu, Draws& draws) {
   body.contact.friction = mu;
   const Vec3<double> aside = draws.vector(0.05);
@@ -279,8 +282,9 @@ TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact
   CHECK(angular < 1e-13);
 }
 
-TEST_CASE("pairs in lasting contact conserve their momenta to first order, and P to rounding if P = m c_dot",
-          "[contact][long]") {
+TEST_CASE(
+    "pairs in lasting contact conserve momenta to first order, and the linear one to rounding if untapered",
+    "[contact][long]") {
   for (const bool tapered : {false, true}) {
     std::vector<double> linear, angular;
     for (const int steps : {100, 200}) {
@@ -321,8 +325,9 @@ TEST_CASE("pairs in lasting contact conserve their momenta to first order, and P
   }
 }
 
-TEST_CASE("balloons in frictional contact with each other and with a rigid part conserve P to rounding",
-          "[contact]") {
+TEST_CASE(
+    "balloons in frictional contact with each other or a rigid part conserve linear momentum to rounding",
+    "[contact]") {
   for (const bool rigid : {false, true}) {
     std::vector<double> angular;
     for (const double h : {4e-4, 2e-4}) {

@@ -45,8 +45,9 @@ const std::vector<Method> kMethods{{"rk4", 0},      {"implicit_midpoint", 0}, {"
 
 }  // namespace
 
-TEST_CASE("N49: a ball bounces at the times of the geometric series, and is at rest after its end",
-          "[contact]") {
+TEST_CASE(
+    "N49: a ball bounces at the times of a geometric series, and is at rest after the end of the series",
+    "[contact]") {
   const double first = std::sqrt(2 / kG);
   // Returns the largest error of the height of the ball, m.
   auto error = [&](const Method& method, double e, double h, double until) {
@@ -104,7 +105,8 @@ TEST_CASE("N50: a block on a slope stays at rest below the friction angle, and s
       Simulation simulation(body, method.name, 1, method.tolerance);
       test::run(simulation, 1, static_cast<int>(std::lround(1 / h)));
       const double a = kG * std::max(0.0, std::sin(angle) - mu * std::cos(angle)),
-                   delay = method.name == std::string("semi_implicit_euler") ? h : 0;  // positions lag by h
+                   // With semi-implicit Euler the displacement is a t (t + h) / 2.
+          delay = method.name == std::string("semi_implicit_euler") ? h : 0;
       const Vec3<double> displacement = simulation.state().q.head<3>() - 0.1 * n;
       CHECK(displacement.norm() == Approx(0.5 * a * (1 + delay)).epsilon(1e-7).margin(3e-14));
       CHECK(simulation.state().v.head<3>().norm() == Approx(a).epsilon(1e-7).margin(3e-14));
@@ -378,7 +380,7 @@ TEST_CASE("N58: a plane that appears or moves pushes the parts in its way", "[co
 TEST_CASE("N58: a plane that hits jointed parts, or appears inside them: their joint stays closed",
           "[contact][joints]") {
   const bool moved = GENERATE(true, false);
-  INFO((moved ? "swat" : "appears"));
+  INFO((moved ? "the plane moves" : "the plane appears"));
   MultiBody body;
   body.gravity.setZero();
   Part& a = test::add(body, "a", "box", {}, 800);
@@ -408,7 +410,8 @@ TEST_CASE("N58: a plane that hits jointed parts, or appears inside them: their j
     CHECK(simulation.state().q[2] > 0.01);  // lifted with a bounded speed
 }
 
-TEST_CASE("without contact nothing is evaluated, and bits do not depend on earlier steps", "[contact]") {
+TEST_CASE("in free flight contact costs no evaluations, and a resumed run gives identical bits",
+          "[contact]") {
   MultiBody body;
   body.contact.restitution = 0.5;
   ball(body, "ball", 0.1, {0, 0, 2});
@@ -458,7 +461,8 @@ TEST_CASE("invalid contact settings are refused by name", "[contact]") {
                     test::has_text("expected parts, planes and obstacles as members"));
 }
 
-TEST_CASE("the most specific rule of pairs and groups applies, and of equal ones the last", "[contact]") {
+TEST_CASE("the most specific rule for a pair applies, and of equally specific rules the last one",
+          "[contact]") {
   MultiBody body;
   body.contact.friction = 0.1;
   body.contact.restitution = 0.2;

@@ -104,9 +104,9 @@ void balloon_on_an_arm(MultiBody& body) {
   floor(body);
 }
 
-/// Energy gains of a run, relative to the energy at the start. `energy` and `balance` are the largest rises
-/// in a step, beyond the error of the step, of the energy and of the energy minus the work in the ledger.
-/// `sum` adds the energy rises of all steps; `left` is the energy that remains at the end.
+/// Energy gains of a run, relative to the energy at the start. `energy` is the largest rise of the energy in
+/// a step, minus the error of the step. `balance` is the same for the energy minus the work in the ledger.
+/// `sum` is the sum of the energy rises of all steps. `remaining` is the energy at the end.
 struct Gain {
   test::Worst energy, balance;
   double sum = 0, remaining = 0;
@@ -125,9 +125,9 @@ Gain gain(const Build& build, const std::string& method, double h, int steps,
     const Ledger before = full_step.ledger();
     full_step.step(h);
     const Ledger after = full_step.ledger();
-    // Errors are of second order in a step: with n substeps they are 1 / n of it, to leading order. Quarters
-    // are also tried, as an impact near the middle divides the step into those halves; and finer substeps, if
-    // a step contains several impacts.
+    // The error of a step is of second order: the error of n substeps is 1 / n of the error of the full step,
+    // to leading order. Four substeps are tried too, because an impact near the middle divides the full step
+    // into halves as well. More substeps are needed if a step contains several impacts.
     double energy = 0, balanced = 0;
     for (const int n : substep_counts) {
       substeps.set_state(at);
@@ -153,7 +153,8 @@ TEST_CASE("inelastic contact with friction gains no energy beyond the error of a
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       CAPTURE(method);
       const Gain result = gain(build, method, 1e-3, 700, {2, 4, 16});
-      // parts that collide within a step are lifted apart: that work is in the ledger
+      // The step separates parts that overlap after a collision within it; the ledger contains the work of
+      // this.
       CHECK(result.energy <= 1e-9);
       CHECK(result.balance <= (std::string(method) == "semi_implicit_euler" ? 1e-6 : 1e-7));
       CHECK(result.sum <= 1e-7);
@@ -183,7 +184,8 @@ TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error
       CAPTURE(scene.name, method);
       const Gain result = gain(scene.build, method, scene.h, scene.steps);
       const bool first_order = method == "semi_implicit_euler";
-      // The error is known to leading order: to some per cent for vibrations in steps of first order.
+      // The error of a step is estimated to leading order only: to some per cent for vibrations with a method
+      // of first order.
       CHECK(result.energy <= (first_order ? 1e-4 : 2e-7));
       CHECK(result.balance <= (first_order ? 1e-4 : 1e-6));
       CHECK(result.sum <= (first_order ? 1e-3 : 1e-5));
@@ -192,10 +194,11 @@ TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error
 }
 
 TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no energy", "[contact]") {
-  // A thin rod is pushed along the floor, leaning so that the tip precedes the centre. If 3 mu sin cos > 1 +
-  // 3 cos^2, no motion with finite forces obeys Coulomb's law, or more than one does if the rod rotates away
-  // from the floor. The solution is an impulse without a collision: the tip, sliding with the speed v, stops
-  // at once by m v (1 + 3 cos^2, 3 sin cos) / 4.
+  // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. If
+  // 3 mu sin cos > 1 + 3 cos^2, no motion with finite forces obeys Coulomb's law; if the rod also rotates
+  // away from the floor, more than one motion does. The solution is an impulse without a collision: it stops
+  // the tip, which slides with the speed v, at once. Its components along and normal to the floor are
+  // m v (1 + 3 cos^2) / 4 and m v 3 sin cos / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})
@@ -253,14 +256,16 @@ TEST_CASE("N59: the impact of a ball on a springboard follows the closed form", 
     Simulation simulation(body, "rk4");
     const double m = ball.total_mass(), M = board.total_mass();
     const double inertia = M / 3 * (0.8 * 0.8 + 0.02 * 0.02);
-    // The impulse at the arm x that separates them with e times the approach speed.
+    // The impulse, at the distance x from the hinge, that separates ball and board with e times the approach
+    // speed.
     const double p = (1 + e) * speed / (1 / m + x * x / inertia);
     const ContactRecord& record = simulation.contact()->record();
     while (record.contacts.empty() && simulation.time() < 0.02) simulation.step(1e-3);
     REQUIRE_FALSE(record.contacts.empty());
     const State& state = simulation.state();
     CAPTURE(e, record.contacts.size());
-    // The first record is the impact itself; during the rest of the step the two may stay in contact.
+    // The first contact of the record is the impact itself. Ball and board may touch during the rest of the
+    // step.
     CHECK(record.impulses[0].norm() == Approx(p).epsilon(1e-9));
     Vec3<double> sum = Vec3<double>::Zero();
     for (std::size_t k = 0; k < record.contacts.size(); ++k)

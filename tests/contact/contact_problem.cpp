@@ -35,7 +35,8 @@ struct Solved {
   ContactSolution solution;
 };
 
-/// Returns the impulses that stop random velocities.
+/// Returns the contacts of a body, and the impulses for random velocities of its parts. `speed` (m/s, rad/s)
+/// is the largest component of these velocities; all parts also move downwards with this speed.
 Solved solve(MultiBody& body, double speed) {
   const Model model(body);
   const Dynamics dynamics(model);
@@ -93,7 +94,7 @@ TEST_CASE("impulses of heaps obey Coulomb's law at every contact", "[contact]") 
     }
 }
 
-TEST_CASE("N55: five thousand contacts in eighty heaps: residual of the impulses", "[contact]") {
+TEST_CASE("N55: the impulses of five thousand contacts in eighty heaps have a small residual", "[contact]") {
   MultiBody body;
   for (int heap = 0; heap < 80; ++heap) lattice(body, 3, 3, {10.0 * (heap % 9), 10.0 * (heap / 9), 0});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
@@ -132,7 +133,7 @@ TEST_CASE("a motion that no impulse can stop is reported, and stays bounded", "[
   ContactProblem problem(model, state, work, contacts);
   const ContactSolution solution = problem.solve(0);
   CHECK(solution.fallbacks == 1);
-  CHECK(solution.residual >= 0.0999);  // the best possible value: half the speed
+  CHECK(solution.residual >= 0.0999);  // the smallest possible value, half the approach speed of the planes
   CHECK(solution.residual < 0.21);
   for (const Vec3<double>& p : solution.impulse) CHECK(p.norm() < 1e9);
   CHECK(problem.after(problem.movers()[0]).norm() < 0.2);

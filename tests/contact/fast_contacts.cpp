@@ -41,8 +41,8 @@ struct ShotResults {
   int hits = 0, passes = 0;
   double deepest = 0;  ///< deepest overlap after the first contact, in sizes
 };
-/// Shoots at a wide target at z = 0, or at another part, from above it. The speeds are up to ten sizes a
-/// step.
+/// Shoots parts from above at a wide target at z = 0, or at another part. at: "plane", "mesh", "plate" or
+/// "body". The speeds are up to ten sizes (kSize) a step.
 ShotResults shoot(const std::string& at, const std::string& shape, int shots, Draws& draws) {
   MultiBody body;
   body.gravity.setZero();
@@ -86,7 +86,7 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
     const Vec3<double> x = simulation.state().q.head<3>();
     bool passed = x[2] < 0;
     if (pair && hit) {
-      // A part that is deflected may overtake the other in the rest of its step, but only beside it.
+      // A deflected part may overtake the other part in the rest of the step, but only beside it.
       const Contact& first_contact = simulation.contact()->contacts().front();
       const double approach = (first_contact.a.part == 0 ? -1 : 1) * first_contact.normal.dot(along);
       const Vec3<double> d = x - simulation.state().q.segment<3>(7);
@@ -100,8 +100,8 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
   }
   return results;
 }
-/// `fast_shots` is the number of shots for pairs with closed forms or few points, `slow_shots` for the
-/// others.
+/// Shoots parts of all shapes at all targets. `fast_shots` is the number of shots for each pair whose
+/// contacts have closed forms or few sample points, `slow_shots` the number for each other pair.
 void shoot_all(int fast_shots, int slow_shots) {
   Draws draws(11);
   for (const std::string at : {"plane", "mesh", "body", "plate"})
@@ -111,7 +111,8 @@ void shoot_all(int fast_shots, int slow_shots) {
       const ShotResults results = shoot(at, shape, is_fast ? fast_shots : slow_shots, draws);
       CAPTURE(at, shape, results.hits);
       CHECK(results.passes == 0);
-      // After an impact that starts a rotation the other end may overlap: 4e-3 has been observed.
+      // An impact may start a rotation, by which the other end of the part overlaps the target: 4e-3 has been
+      // observed.
       CHECK(results.deepest < 1e-2);
     }
 }

@@ -22,22 +22,24 @@ constexpr double kNu = 0.3, kRadius = 0.1, kDensity = 1000, kG = 9.81;
 /// E* against a rigid body, in units of E.
 constexpr double kStiff = 1 / (1 - kNu * kNu);
 
-/// A ball of E = 1 and R = 1 on a smooth rigid plane under a body force: the approach of its centre of mass
-/// in linear elasticity. For small forces it tends to Hertz's half space, F = 4/3 E* sqrt(R) sag^(3/2), a^2 =
-/// R sag. Pressures on rings about the pole balance the force; their displacements are sums over Legendre
-/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964: u_r = [A (n+1)(n-2+4 nu)
-/// + B n] P_n, u_theta = [A (n+5-4 nu) + B] dP_n/dtheta at r = 1).
+/// A ball of E = 1 and R = 1 that a body force presses onto a smooth rigid plane, in linear elasticity. `sag`
+/// is the distance by which its centre of mass approaches the plane. For small forces the solution tends to
+/// that of Hertz's half space: F = 4/3 E* sqrt(R) sag^(3/2), a^2 = R sag with the contact radius a. Here
+/// pressures on rings about the pole balance the body force. Their displacements are sums over Legendre
+/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964). At r = 1 they are
+///   u_r = [A (n+1)(n-2+4 nu) + B n] P_n,   u_theta = [A (n+5-4 nu) + B] dP_n/dtheta.
 struct PressedBall {
-  double sag = 0, contact = 0;  ///< and the radius of the contact
+  double sag = 0, contact = 0;  ///< the approach, and the radius of the contact
 
-  /// The force is that of Hertz for a contact of this radius.
+  /// Applies the force that Hertz's theory gives for the contact radius a. terms: number of Legendre
+  /// polynomials. rings: number of rings; they extend to the polar angle 2 a.
   explicit PressedBall(double a, int terms = 1500, int rings = 60) {
     const double G = 0.5 / (1 + kNu), K = 1 / (3 * (1 - 2 * kNu)), lambda = K - 2 * G / 3;
     using Array = Eigen::ArrayXd;
     const Array edge = Array::LinSpaced(rings + 1, 0, 2 * a).cos(),
                 theta = (Array::LinSpaced(rings, 0, rings - 1) + 0.5) * 2 * a / rings, x = theta.cos(),
                 y = theta.sin();
-    // P_(n-1) and P_n at the edges and midpoints of the rings; the fraction of the pressure on a ring.
+    // P_(n-1) and P_n at the edges of the rings (before, at) and at their midpoints (before_x, at_x).
     Array before = Array::Ones(rings + 1), at = edge, before_x = Array::Ones(rings), at_x = x;
     auto next = [](int n, const Array& z, Array& P_before, Array& P) {
       const Array P_next = ((2 * n + 1) * z * P - n * P_before) / (n + 1);
@@ -63,12 +65,14 @@ struct PressedBall {
       const Array two_before = before;
       next(n, edge, before, at);
       next(n, x, before_x, at_x);
-      const Array rest = 0.5 * (at - two_before);  // (2 n + 1) / 2 times the integral of P_n from -1
+      // (2 n + 1) / 2 times the integral of P_n from -1 to the edge
+      const Array rest = 0.5 * (at - two_before);
       u += along.matrix() * (rest.head(rings) - rest.tail(rings)).matrix().transpose();
     }
     const Array weight = 2 * kPi * (edge.head(rings) - edge.tail(rings)) * x;
     const double force = 4.0 / 3 * kStiff * a * a * a;
-    // The rings in contact satisfy x + u p = 1 - sag, and no pressure is negative.
+    // The k inner rings are in contact: their pressures p satisfy x + u p = 1 - sag. k falls until no
+    // pressure is negative.
     for (int k = rings;; --k) {
       MatX<double> A = MatX<double>::Zero(k + 1, k + 1);
       VecX<double> b(k + 1);
@@ -139,8 +143,8 @@ TEST_CASE("an elastic ball on a plane sags by Hertz's law", "[contact][long]") {
 }
 
 TEST_CASE("an elastic ball bounces off a plane in Hertz's time and keeps its energy", "[contact][long]") {
-  // F = k (sag + C F / (E R))^(3/2), with the compliance C of the whole ball, stops it at the largest sag; t
-  // = int dsag / v.
+  // The force F = k (sag + C F / (E R))^(3/2), with the compliance C of the whole ball, stops the ball at the
+  // largest sag. The contact lasts for twice the integral of d(sag) / v up to this sag.
   const double a = 0.25, E = 1e5, mass = kDensity * 4 / 3 * kPi * std::pow(kRadius, 3),
                k = 4.0 / 3 * E * kStiff * std::sqrt(kRadius), max_force = k * std::pow(a * a * kRadius, 1.5),
                C = (a * a - PressedBall(a).sag) * E * kRadius * kRadius / max_force;

@@ -32,7 +32,7 @@ Part& ball_on_floor(MultiBody& body, double friction) {
       .velocity({1, 0, 0}, {0, 0, 0});
 }
 
-/// A ball starts at rest near the top of another ball, at this angle from it, rad.
+/// A ball starts at rest on top of a larger fixed ball, at this angle from the vertical, rad.
 constexpr double kStart = 0.2;
 void hill(MultiBody& body) {
   body.contact.active = true;
@@ -82,7 +82,7 @@ TEST_CASE("the transitions from sliding to rest and to rolling are resolved with
       CHECK(simulation.step_counters().uncontrolled == 0);
       CHECK(simulation.step_counters().steps < 40);
     }
-    {  // The ball rolls from 2 v / (7 mu g) on, with 5/7 of its speed.
+    {  // From the time 2 v / (7 mu g) the ball rolls, with 5/7 of its initial speed.
       MultiBody body;
       ball_on_floor(body, 0.2);
       Simulation simulation(body, "dop853", 1, tolerance);
@@ -96,7 +96,8 @@ TEST_CASE("the transitions from sliding to rest and to rolling are resolved with
 }
 
 TEST_CASE(
-    "a ball that rolls down another ball follows the tolerance, with steps proportional to its square root",
+    "a ball that rolls down another ball follows the tolerance, with step lengths proportional to its square "
+    "root",
     "[error][contact]") {
   const double angle = angle_on_hill(0.5);
   auto rolling_steps = [&](double tolerance) {
@@ -135,8 +136,9 @@ TEST_CASE("a resting stack stays exactly at rest, in steps limited by the free f
       CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
       CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
     }
-    CHECK(simulation.step_counters().steps < 120);  // 2.5 g h^2 is limited to 0.4 times the box's 0.2 m
-    // no step doubling
+    // g h^2 / 2 is limited to 0.4 times the height of a box, 0.2 m.
+    CHECK(simulation.step_counters().steps < 120);
+    // Resting contacts alone need no step doubling.
     CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);
   }
 }

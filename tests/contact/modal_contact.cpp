@@ -28,7 +28,7 @@ using Basis = LocalSettings::Basis;
 
 constexpr double kRadius = 0.1;
 
-/// An elastic ball with polynomials of degree 4.
+/// Adds an elastic ball whose local deformation is a sum of polynomials of degree 4.
 Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, double E = 2e5) {
   auto& part = body.add<Primitive<Sphere>>(name, 1000.0);
   part.rest({{"r", kRadius}}).place(at);
@@ -41,8 +41,8 @@ Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, do
   return part;
 }
 
-/// Adds a shell that oscillates while it falls, with two dynamic parameters; deformed by the nodes of its
-/// mesh or by all of its modes.
+/// Adds a shell that oscillates while it falls onto a floor, with nodes (Basis::nodes) or with all modes of
+/// its mesh. parameters: whether two semi-axes are dynamic.
 void falling(MultiBody& body, Basis basis, bool parameters) {
   body.contact.friction = 0.4;
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
@@ -65,7 +65,7 @@ struct PlaneImpact {
   ContactSolution solution;
 };
 
-/// Returns the impulses on all points that are behind a plane at the start.
+/// Returns the impulses on all nodes that are behind the floor at the start.
 PlaneImpact strike(Basis basis, bool parameters) {
   MultiBody body;
   falling(body, basis, parameters);
@@ -187,7 +187,7 @@ TEST_CASE("a jointed elastic ball hits a wall, and its joint stays closed",
   CHECK(simulation.ledger().energy() < start);
 }
 
-TEST_CASE("possible contacts limit the step by the modes of the part", "[contact][modal][long]") {
+TEST_CASE("if contact is possible, the fastest mode of a part limits the step", "[contact][modal][long]") {
   for (const std::string method : {"semi_implicit_euler", "rk4"}) {
     MultiBody free, touching;
     jelly(free, "ball", {0, 0, 0.2});

@@ -24,8 +24,8 @@ struct Mesh {
   Eigen::Matrix3Xi triangles;
 };
 
-/// Maps a grid of n x n squares over [-1, 1]^2; its inner points are displaced by `random` times their
-/// spacing.
+/// Maps a grid of n x n squares over [-1, 1]^2. Its inner vertices are displaced at random by up to `random`
+/// times their spacing.
 Mesh sheet(int n, double random, const std::function<Vec3<double>(double, double)>& map) {
   Draws draws(7);
   Mesh mesh;
@@ -105,7 +105,7 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
     const Mesh roof = sheet(12, 0.2, [&](double x, double y) -> Vec3<double> {
       return {3 * x, y, -slope * std::abs(3 * x)};
     });
-    // An odd row of the grid coincides with the ridge.
+    // The middle row of vertices is moved exactly onto the ridge.
     Mesh mesh = roof;
     for (Eigen::Index i = 0; i < mesh.x.cols(); ++i)
       if (std::abs(mesh.x(0, i)) < 0.16) mesh.x.col(i) = Vec3<double>(0, mesh.x(1, i), 0);
@@ -211,8 +211,9 @@ TEST_CASE("a box that overhangs a plate stays while its centre is above the plat
   }
 }
 
-TEST_CASE("a plate blocks motion from both sides, an open mesh from one, only while it is active",
-          "[contact]") {
+TEST_CASE(
+    "a plate blocks motion from both sides, an open mesh from one side, both only while they are active",
+    "[contact]") {
   for (const bool two_sided : {true, false})
     for (const double from : {1.0, -1.0}) {
       MultiBody body;
@@ -266,7 +267,7 @@ TEST_CASE("N53: fast parts do not pass through a mesh without thickness", "[cont
   CHECK(through == 0);
 }
 
-TEST_CASE("an invalid mesh is refused with its fault", "[contact]") {
+TEST_CASE("an invalid mesh is refused, and the message names its fault", "[contact]") {
   const auto refusal = [](const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles) -> std::string {
     try {
       const ObstacleMesh mesh(x, triangles);
@@ -308,7 +309,7 @@ TEST_CASE("an invalid mesh is refused with its fault", "[contact]") {
   CHECK_THAT(refusal(x, triangles), test::has_text("has three triangles: 0, 1 and 2"));
 }
 
-TEST_CASE("a mesh is welded, and finds its border, its flat faces and the nearest features", "[contact]") {
+TEST_CASE("a mesh merges equal vertices, and finds nearest points and the triangles in a box", "[contact]") {
   Draws draws(5);
   const Mesh mesh = sheet(9, 0.3, [](double x, double y) -> Vec3<double> {
     return {x, y, std::max(0.0, x)};

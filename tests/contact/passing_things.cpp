@@ -131,7 +131,7 @@ TEST_CASE("a box rebounds equally from a table that was added first or last", "[
   CHECK(first == Approx(last).epsilon(0.02));
 }
 
-TEST_CASE("N54: a part deep in a much larger one is separated at one of its own sizes a second",
+TEST_CASE("N54: a small part deep in a much larger one is separated at one size of the small part a second",
           "[contact]") {
   for (const bool ground_first : {false, true}) {
     MultiBody body;

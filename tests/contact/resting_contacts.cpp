@@ -1,5 +1,5 @@
-// The search for resting contacts is repeated only near parts that have moved; the result is bit-identical,
-// and in the same order, to a search of all parts.
+// The search for resting contacts is repeated only near parts that have moved. The result equals that of a
+// search of all parts, bit for bit and in the same order.
 #include "catch.h"
 
 #include <pliant/contact/resting_contacts.h>
@@ -68,7 +68,7 @@ TEST_CASE("an incremental search for resting contacts agrees with a full search"
             Eigen::Quaterniond(1, draws.uniform(-1, 1), draws.uniform(-1, 1), 0).normalized().coeffs();
       if (m.n_s > 0) state.q[m.q0 + 7] = draws.uniform(0.08, 0.12);
     }
-    if (moving == 20) finder.find(state, 0.5, 0.3);  // farther than the distance of later searches
+    if (moving == 20) finder.find(state, 0.5, 0.3);  // a search with a wider gap than the later ones
     const std::vector<Contact> before = resting.near(state, 0.5),
                                all = ContactFinder(model).find(state, 0.5, resting.gap());
     REQUIRE(before.size() == all.size());

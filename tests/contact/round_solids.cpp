@@ -219,10 +219,10 @@ TEST_CASE("standing cylinders, flat tori and lying cylinders along their axis st
 }
 
 TEST_CASE("cylinders, capsules and tori roll down a slope by the closed form", "[contact]") {
-  // a = g sin / (1 + I / (m r^2)). The rim of a cylinder and the sides of a capsule are represented by
-  // points. Each passage of a point costs some speed: a thousandth in all.
+  // a = g sin(angle) / (1 + I / (m r^2)). Sample points represent the rim of a cylinder and the side of a
+  // capsule. Rolling from one sample point to the next costs some speed: a thousandth in all.
   const double angle = 0.3, tube = 0.05, ring = 0.15, r = 0.1, l = 0.3;
-  const double side = l, caps = 4.0 / 3 * r;  // fractions of the volume of a capsule
+  const double side = l, caps = 4.0 / 3 * r;  // volumes of the cylinder and of both caps, divided by pi r^2
   struct Case {
     const char* name;
     double radius, inertia_ratio;  // m; I / (m r^2)
@@ -259,7 +259,8 @@ TEST_CASE("a cone, tip down, comes to rest in a torus", "[contact]") {
     MultiBody body;
     floor(body);
     torus(body, "a", tube, ring).place({0, 0, tube});
-    // Height at which the distance of the cone from the core ring equals the radius of the tube.
+    // Height of the tip of the cone at which its surface has the distance `tube` from the core circle of the
+    // torus.
     const double tip = tube - (ring * std::cos(half) - tube) / std::sin(half);
     cone(body, "b", 1).place({0, 0, tip + 0.15 + drop});
     Simulation simulation(body, "rk4");
@@ -269,7 +270,7 @@ TEST_CASE("a cone, tip down, comes to rest in a torus", "[contact]") {
   }
 }
 
-TEST_CASE("a part in contact along a line of its side rolls at most to the next point of its rim",
+TEST_CASE("a part in contact along a line of its side rolls at most to the next sample point of its rim",
           "[contact][long]") {
   Draws draws(3);
   Worst rolled, raised;
@@ -301,7 +302,7 @@ TEST_CASE("a part in contact along a line of its side rolls at most to the next 
   CHECK(raised < 1.5e-9);
 }
 
-TEST_CASE("parts with nearly flat faces rest on their deepest point", "[contact]") {
+TEST_CASE("parts with nearly flat faces rest on their lowest point", "[contact]") {
   for (const double eps1 : {0.03, 0.036, 0.04, 0.043, 0.046, 0.2}) {
     CAPTURE(eps1);
     MultiBody body;

@@ -51,7 +51,7 @@ void run_until_asleep(Simulation& simulation) {
   REQUIRE(all_sleep(simulation));
 }
 
-/// Returns whether a body wakes within 20 steps.
+/// Returns whether all bodies wake within 20 steps.
 bool wakes(Simulation& simulation) {
   for (int i = 0; i < 20; ++i) {
     simulation.step(kStep);
@@ -111,7 +111,7 @@ TEST_CASE("bodies sleep only if sleep is active, and moving bodies stay awake", 
   CHECK(both.state().v[6] == Approx(0.5).epsilon(1e-6));
 }
 
-TEST_CASE("a body that falls on sleeping ones wakes all of them, and the motion is that without sleep",
+TEST_CASE("a body that falls on sleeping ones wakes all of them, and the motion is the same as without sleep",
           "[sleep][contact]") {
   VecX<double> end[2];
   for (const bool sleep : {false, true}) {
@@ -282,7 +282,7 @@ TEST_CASE("bodies connected by a torque sleep together or not at all", "[sleep][
   CHECK(none_sleeps(simulation));
 }
 
-TEST_CASE("sleep with error control, and with long steps within which a joint switches on",
+TEST_CASE("bodies sleep, and a joint that switches on within a step wakes them, also with error control",
           "[sleep][contact]") {
   for (const char* method : {"dormand_prince", "dop853", "esdirk"})
     for (const double tolerance : {0., 1e-6})

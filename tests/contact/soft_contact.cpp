@@ -106,7 +106,7 @@ TEST_CASE("balloons that collide conserve their momenta, lose energy, and do not
   CHECK((after.momentum - before.momentum).norm() < 1e-12 * scale);
   CHECK((after.angular_momentum - before.angular_momentum).norm() < 5e-3 * scale * 0.1);
   CHECK(after.energy() < before.energy());
-  // They have rebounded.
+  // The balloons have rebounded.
   CHECK(simulation.state().v[simulation.model().parts()[0].v0] < 0);
   CHECK(simulation.state().v[simulation.model().parts()[1].v0] > 0);
 }
@@ -127,7 +127,7 @@ TEST_CASE("a balloon and a rigid box collide: momenta are conserved, without pen
   CHECK(after.energy() < before.energy());
 }
 
-TEST_CASE("balloons on strings that collide: the strings stay taut", "[contact][joints][long]") {
+TEST_CASE("balloons on strings collide, and the strings do not stretch", "[contact][joints][long]") {
   MultiBody body;
   body.contact.active = true;
   Part& left = balloon(body, "left", {-0.3, 0, -0.4});
@@ -145,7 +145,7 @@ TEST_CASE("balloons on strings that collide: the strings stay taut", "[contact][
 }
 
 TEST_CASE("N53: a fast balloon does not pass through a thin plate", "[contact]") {
-  for (const double speed : {10.0, 100.0}) {  // up to half the balloon in a step
+  for (const double speed : {10.0, 100.0}) {  // m/s; up to half the radius of the balloon in a step
     MultiBody body;
     body.gravity.setZero();
     body.contact.active = true;
@@ -182,7 +182,8 @@ TEST_CASE("contacts of crossing meshes: corners behind faces, edges across edges
     find_touches(a, b, found);
     return found;
   };
-  // Edges along y of a and, rotated by 45 degrees about two axes, along another direction of b.
+  // The cube b is rotated by 45 degrees about x: its lowest and highest edges, at the distance `reach` from
+  // its centre, are parallel to x.
   const Eigen::Quaterniond rotated(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitX()));
   const double reach = std::sqrt(2.0);
   {  // an edge of b along x, on the upper face of a
@@ -193,7 +194,7 @@ TEST_CASE("contacts of crossing meshes: corners behind faces, edges across edges
       CHECK((touch.normal - Vec3<double>(0, 0, -1)).norm() < 1e-12);
     }
   }
-  {  // edge across edge: a rotated by 45 degrees about y, b about x
+  {  // an edge across an edge: a is rotated by 45 degrees about y, b about x
     const Eigen::Quaterniond other(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitY()));
     const PlacedMesh a(mesh, other.toRotationMatrix() * p),
         b(mesh, (rotated.toRotationMatrix() * p).colwise() + Vec3<double>(0.13, 0.07, 2 * reach - 1e-3));
@@ -230,7 +231,7 @@ struct Ground {
   Eigen::Matrix3Xi triangles;
   int n;
 
-  /// A mesh of n x n squares over [-1, 1]^2, scaled to half a metre on each side, with the given height.
+  /// Makes a mesh of n x n squares over [-0.5, 0.5]^2, n = squares. height(u, v) returns its height, m.
   template <class F>
   Ground(int squares, F&& height) : n(squares) {
     x.resize(3, (n + 1) * (n + 1));
@@ -245,7 +246,8 @@ struct Ground {
         triangles.col(t++) = Eigen::Vector3i(k, next + 1, k + 1);
       }
   }
-  /// Returns the height of a point above the triangle below it, m.
+  /// Returns the distance of a point from the plane of the triangle above or below it, m. It is negative
+  /// below the triangle. Returns 1 beside the mesh.
   double above(const Vec3<double>& p) const {
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
       const Vec3<double> a = x.col(triangles(0, t)), b = x.col(triangles(1, t)), c = x.col(triangles(2, t));
@@ -271,7 +273,7 @@ double depth_in(const ObstacleMesh& mesh, const Vec3<double>& p) {
                                                      b.dot(c) * a.norm() + c.dot(a) * b.norm());
     nearest = std::min(nearest, (mesh.nearest(t, p) - p).norm());
   }
-  return solid_angle > kPi ? nearest : 0;  // half the full solid angle
+  return solid_angle > kPi ? nearest : 0;  // half the solid angle of the mesh: 2 pi inside, 0 outside
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ Numbers<Deform> defaults() {
     b[k] = Deform::parameters[static_cast<std::size_t>(k)].standard;
   return b;
 }
-/// Returns random parameters in the dynamic range. Tapers stay below the tip and bends below the fold, where
-/// no inverse exists.
+/// Returns random parameters in the dynamic range. Tapers are at most 0.95, because a full taper has no
+/// inverse at its tip.
 template <class Deform>
 Numbers<Deform> draw(Draws& draws) {
   Numbers<Deform> b;
@@ -77,9 +77,11 @@ TEMPLATE_LIST_TEST_CASE("the defaults are the identity, bit for bit", "[deform]"
   }
 }
 
+// The amplitudes of a deformation are its first parameters; at their defaults the deformation is the
+// identity.
 TEMPLATE_LIST_TEST_CASE(
-    "with amplitudes at their defaults the deformation is the identity, for any other parameters", "[deform]",
-    AllDeforms) {
+    "with amplitudes at their defaults the deformation is the identity, for any values of other parameters",
+    "[deform]", AllDeforms) {
   Draws draws(8);
   for (int trial = 0; trial < 200; ++trial) {
     Numbers<TestType> b = draw<TestType>(draws);
@@ -180,7 +182,8 @@ TEST_CASE("N11: a bend and its derivatives are continuous at zero bend", "[defor
   }
 }
 
-TEST_CASE("a bend rotates its axis by its angle, and conserves its length", "[deform]") {
+TEST_CASE("a bend rotates the end of the axis by its angle, and conserves the length of the axis",
+          "[deform]") {
   for (double angle : {0.3, -1.0, 2.0, 3.1})
     for (double direction : {0.0, 0.7, -2.0}) {
       const Vec<double, 2> b(angle, direction);
@@ -193,8 +196,7 @@ TEST_CASE("a bend rotates its axis by its angle, and conserves its length", "[de
     }
 }
 
-TEST_CASE("N11: the inverse of a bend is valid up to the end of its range, half a turn, and beyond",
-          "[deform]") {
+TEST_CASE("N11: the inverse of a bend is valid up to the ends of its range, half a turn", "[deform]") {
   Draws draws(9);
   for (double angle : {3.14, -3.14, kPi, -kPi, kPi / 2, -kPi / 2, 1.5707963, 3.1})
     for (double zeta : {-1.0, -0.999, -0.5, 0.0, 0.5, 0.999, 1.0})
@@ -253,7 +255,7 @@ TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", 
       dynamic[static_cast<std::size_t>(k)] = draws.uniform(0, 1) < 0.6;
       b_dot[k] = dynamic[static_cast<std::size_t>(k)] ? draws.uniform(-1, 1) : 0.0;
     }
-    // Two columns belong to the shape, the first of which also changes h, and one to an earlier link.
+    // J has two columns of the shape, the first of which also changes h, and one column of an earlier link.
     HalfHeight<double> half;
     half.h = Taylor2<double>(kHalfHeight, draws.uniform(-1, 1), draws.uniform(-1, 1));
     half.slope.resize(2);

@@ -35,7 +35,7 @@ State end_of(const std::function<void(MultiBody&)>& build, const std::string& me
   return simulation.state();
 }
 
-/// A shell on a string; its vibrations decay within a few milliseconds.
+/// A shell that swings on a ball joint; its vibrations decay within a few milliseconds.
 void stiff_pendulum(MultiBody& body) {
   Part& part = body.add<Primitive<Sphere>>("shell", 1.0);
   part.rest({{"r", 0.5}}).make_shell();
@@ -147,7 +147,7 @@ TEST_CASE("N25: a motion that no step can resolve stops the run, with the last g
   Simulation simulation(body, "dop853", 1, 1e-9);
   try {
     while (simulation.time() < 1) simulation.step_up_to(1);
-    FAIL("the motion could not be reproduced");
+    FAIL("expected the run to fail, because no step can resolve the motion");
   } catch (const NumericalFailure& failure) {
     CHECK_THAT(failure.what(), test::has_text("tolerance"));
   }
@@ -165,7 +165,7 @@ TEST_CASE("meaningless tolerances, and methods without an error estimate, are re
   pendulum(body);
   try {
     Simulation simulation(body, "rk4", 1, 1e-6);
-    FAIL("rk4 has no error estimate");
+    FAIL("expected a refusal, because rk4 has no error estimate");
   } catch (const std::invalid_argument& failure) {
     CHECK_THAT(failure.what(), test::has_text("'dop853'"));
   }
@@ -217,7 +217,8 @@ TEST_CASE("joints close as accurately as the tolerance asks", "[error]") {
   }
 }
 
-TEST_CASE("steps on a stiff shell depend on its slow swing, and factors are reused", "[error]") {
+TEST_CASE("the swing of a stiff shell, not its stiffness, limits the steps, and factors are reused",
+          "[error]") {
   constexpr double end = 0.5;
   StepCounters explicit_counters;
   const State exact = end_of(stiff_pendulum, "dop853", 1e-8, end, &explicit_counters);
@@ -296,9 +297,9 @@ TEST_CASE("the method is chosen by the stiffness of the model, the tolerance and
   CHECK(Simulation(dropped, kAutomatic, 1, 1e-7).choice().integrator == "dop853");
 }
 
-TEST_CASE("impacts are located within the tolerance for every step length", "[error]") {
-  // A ball dropped from 1 m rebounds with 0.8 of its impact speed: its k-th bounce is at T (1 + 2 e + ... + 2
-  // e^k).
+TEST_CASE("with error control, impacts are located within the tolerance", "[error]") {
+  // A ball dropped from 1 m rebounds with e = 0.8 of its impact speed. The first bounce is at the time T of
+  // the fall, and the k-th bounce after it at T (1 + 2 e + ... + 2 e^k).
   MultiBody body;
   body.add<Primitive<Sphere>>("ball").rest({{"r", 0.1}}).place({0, 0, 1.1});
   body.contact.active = true;

@@ -172,13 +172,13 @@ TEST_CASE("a damped spring follows the closed form", "[forced]") {
   CHECK(simulation.state().q[0] == Approx(x).epsilon(1e-9));
 }
 
-TEST_CASE("a hanging body stretches its own springs: static equilibrium", "[forced]") {
-  // A stiff damped spring at its centre would not stretch the solid ellipsoid: gravity does not strain it
-  // about its own centre.
+TEST_CASE("a hanging elastic body stretches under its weight: static equilibrium", "[forced]") {
+  // A spring at the centre of the ellipsoid would not stretch it, because gravity has no generalized force on
+  // a3.
   MultiBody body;
   auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
   part.mass(3).stiffness({{"a3", 400}}).damping(0, 0.02);
-  // The pole carries the weight: the stretch is m g / k3. A stiff spring replaces the string.
+  // The string, a stiff damped spring, pulls at the pole with the weight: a3 grows by m g / k3.
   body.spring("string", point(part, material_at(kPi / 2, 0)), world(0, 0, 3), 2000, 60);
   Simulation simulation(body, "rk4");
   test::run(simulation, 20, 20000);

@@ -1,5 +1,5 @@
-// Free motion with known solutions: the torque-free top, dust, steady spin, breathing, pseudo-rigid bodies,
-// and a tumbling solid with all parameters dynamic.
+// Free motion with known solutions: the torque-free top, dust (a solid without elasticity), steady spin,
+// breathing, pseudo-rigid bodies, and a tumbling solid with all parameters dynamic.
 #include "catch.h"
 
 #include "motion.h"
@@ -38,8 +38,7 @@ TEST_CASE("torque-free top: a solid ellipsoid agrees with the exact solution in 
   CHECK((end.momentum - start.momentum).norm() < 1e-14);
 }
 
-TEST_CASE("torque-free top: the period of omega, also from the angular momentum in the world frame",
-          "[motion]") {
+TEST_CASE("torque-free top: omega returns to its initial value after one period", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("top", 1000);
@@ -73,7 +72,7 @@ TEST_CASE("torque-free top: a perturbation of spin about the middle axis grows a
   const double tiny = 1e-7;
   part.inertia(1, Vec3<double>(1, 2, 2.5).asDiagonal());
   const double rate = 1.5 * std::sqrt(1.0 * 0.5 / 2.5);
-  // The unstable direction: omega_1 / omega_3 = sqrt(I3 (I3 - I2) / (I1 (I2 - I1))).
+  // The unstable direction: omega_1 / omega_3 = -sqrt(I3 (I3 - I2) / (I1 (I2 - I1))).
   part.velocity({0, 0, 0}, {tiny, 1.5, -tiny / std::sqrt(2.5 * 0.5)});
   Simulation simulation(body, "rk4");
   test::run(simulation, 4, 4000);
@@ -141,7 +140,8 @@ TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / 5k) and ke
   }
 }
 
-TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>)", "[motion]") {
+TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m s), where s is the mean of (z / a3)^2",
+          "[motion]") {
   struct Body {
     bool shell;
     double eps, mean_square;

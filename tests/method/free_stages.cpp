@@ -1,5 +1,6 @@
-// Free modes under explicit Runge-Kutta methods with error control: the methods integrate the oscillators
-// exactly, so that stiff modes do not shorten the steps.
+// Free modes (modes of local deformation on which no joint or contact acts) under explicit Runge-Kutta
+// methods with error control. The methods integrate these oscillators exactly, so that stiff modes do not
+// shorten the steps.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>
@@ -87,7 +88,7 @@ TEST_CASE(
     CAPTURE(method, steps, energies, stable);
     CHECK(steps[1] <= 6 * steps[0]);  // the lowest modes of the softest solid are as slow as the tumbling
     CHECK(steps[2] <= 1.5 * steps[1]);
-    CHECK(stable[2] >= 0.5 * stable[0]);  // the limit of its spin
+    CHECK(stable[2] >= 0.5 * stable[0]);  // the spin limits the step, not the modes
     for (const double energy : energies) CHECK(energy <= 1e-4);
   }
 }

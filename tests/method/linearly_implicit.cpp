@@ -1,5 +1,5 @@
-// The linearly implicit method: its order, steps far above the explicit limit, and which matrices it factors
-// when.
+// The linearly implicit method: its order, steps far above the explicit limit (the largest stable step of
+// RK4), and when it factors which matrices.
 #include "catch.h"
 
 #include <new>
@@ -141,6 +141,7 @@ void check_order(const Build& build, double time, const std::vector<int>& steps)
   CHECK(observed_order(error.v) >= 1.9);
 }
 
+/// Returns the largest stable step of RK4, s.
 double explicit_limit(const Build& build) {
   MultiBody body;
   build(body);
@@ -175,7 +176,7 @@ TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[i
     soft.laws.push_back({"gas", {10, 1.4, 8}});
     check_order(flying(soft), 0.4, {50, 100, 200});
   }
-  SECTION("an energy that provides no stiffness: order 2 for any A") {
+  SECTION("an energy that provides no stiffness: order 2 for any approximate Jacobian A") {
     check_order(
         [](MultiBody& body) {
           body.gravity.setZero();
@@ -299,7 +300,8 @@ TEST_CASE("the ledger of a soft part with damping, drag, a spring and a moving a
   CHECK(observed_order(balance) >= 1.9);
 }
 
-TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implicit][stable][long]") {
+TEST_CASE("steps of 100 times the explicit limit are stable for a thousand steps",
+          "[implicit][stable][long]") {
   std::vector<std::pair<std::string, Build>> all;
   auto each = [&](const std::string& name, Soft soft) {
     soft.displacement_factor = 0.05;
@@ -390,7 +392,7 @@ TEST_CASE("100 times the explicit limit on joints: stable, and joints closed to 
 }
 
 TEST_CASE("a stiff part on joints approaches the rigid motion as its stiffness grows", "[implicit][joints]") {
-  // All runs use one long step, far above the explicit limit of the stiff parts.
+  // All runs use the same step length, far above the explicit limit of the stiff parts.
   auto tip = [](const Build& build) {
     MultiBody body;
     build(body);
@@ -661,7 +663,8 @@ TEST_CASE("N20: springs at the nodes of a stiff part limit the step, and the pre
 
 namespace {
 
-/// A factor whose factorisation always fails.
+/// A sparse factor whose factorisation always fails. memory: whether memory is sufficient; if so, the matrix
+/// is reported as one that cannot be factored.
 class NoFactor final : public SparseFactor {
  public:
   explicit NoFactor(bool memory) : memory_(memory) {}

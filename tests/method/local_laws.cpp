@@ -136,7 +136,7 @@ TEST_CASE("damping of every law: K x_dot about rest, zero for rigid motion, neve
   }
 }
 
-TEST_CASE("small motion decays equally under a law of positions and under the linear one",
+TEST_CASE("small motion decays equally under the nonlinear laws and under the linear law",
           "[local][motion][long]") {
   for (const bool shell : {false, true}) {
     auto remaining_energy = [&](const char* law) {

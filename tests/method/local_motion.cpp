@@ -27,7 +27,8 @@ struct Kind {
   int order;
   std::vector<LocalLaw> laws;
 };
-/// Energies that are quadratic in the displacements, and energies of the positions.
+/// Returns materials with energies that are quadratic in the displacements, and with energies of the
+/// positions.
 std::vector<Kind> kinds() {
   const std::vector<double> solid{300, 0.3}, sheet{300, 0.3, 0.05};
   return {{"a shell, linear", 0, {local_law("membrane", sheet), local_law("bending", sheet)}},
@@ -41,8 +42,8 @@ std::vector<Kind> kinds() {
           {"a curved solid of rubber", 2, {local_law("neo_hookean", solid)}}};
 }
 
-/// A tumbling part; if `soft`, its global parameters are dynamic. Without laws it has a net of springs.
-/// `order` of the elements, 0 for a shell.
+/// A tumbling part; if `soft`, its global parameters are dynamic. `order` of the elements, 0 for a shell.
+/// Without `laws` a shell has a net of springs, and a solid has the law "elastic".
 Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
                const std::vector<LocalLaw>& laws = {}) {
   body.gravity.setZero();
@@ -65,8 +66,9 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
   return part;
 }
 
-/// Applies a force at each of the given points in turn, to a moving part or a part at rest. Checks that the
-/// sums of m x_ddot and x x m x_ddot over the nodes are the force and its torque.
+/// Applies a force at each of the given material points in turn, to a moving part or a part at rest. Checks
+/// that the sum of m x_ddot over the nodes is the force, and the sum of p cross m x_ddot its torque about the
+/// frame's origin.
 void check_forces(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
   const Vec3<double> force(1, -2, 0.5);
   std::size_t active = 0;
@@ -107,8 +109,9 @@ void check_forces(MultiBody& body, Part& part, const std::vector<Material<double
   }
 }
 
-/// Violation of the reference conditions: W^T d, relative to the mass times the size of the part, and the
-/// change of (c_dot, omega, q_s_dot) that would satisfy the velocity conditions.
+/// Violation of the reference conditions W^T d = 0 (README of part/local). position: W^T d, relative to the
+/// mass times the size of the part. velocity: the change of (c_dot, omega, q_s_dot) that would satisfy the
+/// time derivative of the conditions.
 struct Violation {
   double position = 0, velocity = 0;
 };
@@ -132,7 +135,7 @@ Violation violation(const Simulation& simulation, Workspace<double>& work) {
   return worst;
 }
 
-/// Returns the largest violations after each of the steps.
+/// Returns the largest violations at the ends of the given number of steps.
 Violation max_violation(Simulation& simulation, double h, int steps) {
   Workspace<double> work;
   Violation worst;
@@ -237,8 +240,9 @@ TEST_CASE("W^T d = 0 to rounding during a run: laws of every kind, free, on a jo
         }
 }
 
-TEST_CASE("reference conditions do not disturb a long motion under gravity: P and L follow it",
-          "[local][motion][long]") {
+TEST_CASE(
+    "reference conditions do not disturb a long motion under gravity: momenta and c follow closed forms",
+    "[local][motion][long]") {
   const Vec3<double> g(0.5, 0, -9.81);
   for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"})
     for (const Kind& kind : kinds()) {
@@ -299,8 +303,9 @@ TEST_CASE(
       }
 }
 
-TEST_CASE("N09: a force inside an element does this too, for shells and for solids of both orders",
-          "[local]") {
+TEST_CASE(
+    "N09: a force inside an element gives the same accelerations, for shells and for solids of both orders",
+    "[local]") {
   test::Draws draw(9);
   for (const bool soft : {false, true})
     for (const bool moving : {false, true})
@@ -318,8 +323,7 @@ TEST_CASE("N09: a force inside an element does this too, for shells and for soli
       }
 }
 
-TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves on a straight line",
-          "[local]") {
+TEST_CASE("dust: every node of a spinning shell without elasticity moves on a straight line", "[local]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("dust", 1);
@@ -448,7 +452,7 @@ void needle(MultiBody& body, bool soft, double closed, double closing) {
   part.deform_locally(settings);
 }
 
-/// Returns whether `act` fails because the nodes do not separate the frame and the parameters.
+/// Returns whether `act` fails because the nodes do not determine the frame and the parameters.
 bool stops(const std::function<void()>& act) {
   std::string what;
   try {
@@ -491,7 +495,7 @@ TEST_CASE("N66: a soft shell gives identical bits with any number of threads", "
   std::vector<std::uint64_t> bits;
   for (const int threads : {1, 2, 3}) {
     MultiBody body;
-    // The mesh has enough triangles for several ranges of elements.
+    // The mesh has so many triangles that several threads share them.
     auto& part = body.add<Primitive<Sphere>>("ball", 1);
     part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
     LocalSettings settings;

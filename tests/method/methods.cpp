@@ -1,5 +1,5 @@
 // All methods of integration: their orders on smooth problems with and without joints, at several times of a
-// run; the invariants of the implicit midpoint rule; the step lengths of the stiff method.
+// run; the invariants of the implicit midpoint rule; the step lengths of the stiff method, ESDIRK.
 #include "catch.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct Problem {
   const char* name;
   std::function<void(MultiBody&)> build;
   double end;
-  int steps;  ///< of the longest step of a method of order 4; other methods use more or fewer
+  int steps;  ///< unit of the number of steps: each order of a method uses a multiple or a fraction
 };
 
 /// Two links, one hanging from the other, both stretching.
@@ -104,7 +104,7 @@ const std::vector<Problem> kProblems{
     {"a ring of links", ring, 0.4, 16},
     {"a rubber shell", shell, 0.04, 16}};
 
-/// States and joint forces at the quarters of a run.
+/// States and joint forces at the ends of the four quarters of a run.
 struct Samples {
   VecX<double> q, v, lambda;
 };
@@ -156,7 +156,7 @@ TEST_CASE("every method has its order on smooth motion, free, with joints and wi
       CAPTURE(q, v, lambda);
       CHECK(test::observed_order(q) > min_order);
       CHECK(test::observed_order(v) > min_order);
-      // The order of the forces appears late, so only the last two errors count.
+      // Forces reach their order only at small steps, so that only the last two errors count.
       if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > min_order);
     }
   }

@@ -78,8 +78,8 @@ TEST_CASE("a mode of a free sphere is integrated exactly over a hundred periods 
       simulation.set_state(state);
       test::run(simulation, 100.25 * period, 401 * 3 / 4);
       const double g = 0.5 * all.damping[0], t = simulation.state().time();
-      // Roots of x^2 + 2 g x + omega^2; c and s are the cosine and sine of an oscillation, or a pair of
-      // decays.
+      // `one` and `other` are the roots of x^2 + 2 g x + omega^2. The solution is q = 1e-3 c, with the rate
+      // -1e-3 omega^2 s.
       const std::complex<double> kappa = std::sqrt(std::complex<double>(all.omega2[0] - g * g)), i(0, 1),
                                  one = i * kappa - g, other = all.omega2[0] / one;
       const double s = ((std::exp(one * t) - std::exp(other * t)) / (one - other)).real(),
@@ -91,9 +91,8 @@ TEST_CASE("a mode of a free sphere is integrated exactly over a hundred periods 
     }
 }
 
-TEST_CASE(
-    "free flight of modes that oscillate, tumble and change their shape: order 4, and conservation laws",
-    "[modal][motion][long]") {
+TEST_CASE("free flight of parts whose modes oscillate while they tumble: order 4, and conservation laws",
+          "[modal][motion][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool parameters : {false, true}) {
       std::vector<double> energy, momentum, angular;
@@ -181,7 +180,7 @@ TEST_CASE("a force at any node accelerates the centre of mass by F / m and rotat
       }
 }
 
-TEST_CASE("dust of polynomials: every point of a spinning body without elasticity moves on a straight line",
+TEST_CASE("dust: material points of a spinning body of polynomials without elasticity move on straight lines",
           "[modal]") {
   std::vector<double> errors;
   for (const int steps : {50, 100, 200}) {
@@ -253,8 +252,8 @@ TEST_CASE("modes on a ball joint, a hinge and a loop: joints stay closed, and th
 
 namespace {
 
-/// Adds a part with a basis, in free flight or hanging from a point of its surface. The nodal mesh is coarse
-/// and its motion slow.
+/// Adds a part with a basis, in free flight or hanging from a point of its surface. With nodes, the mesh is
+/// coarse.
 void add_part(MultiBody& body, Basis basis, bool hanging) {
   auto& part = body.add<Primitive<Ellipsoid>>("soft", 20);
   part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})
@@ -282,7 +281,7 @@ State end_of(Basis basis, bool hanging, const std::string& method, int steps) {
 
 struct MethodCase {
   const char* method;
-  int steps;  ///< of the longest step
+  int steps;  ///< number of steps of the coarsest run
 };
 
 }  // namespace
@@ -399,7 +398,7 @@ TEST_CASE("modes give identical bits with any number of threads, and after a cop
 }
 
 TEST_CASE(
-    "the largest stable step of modes: unlimited when they are free, that of the highest mode on a spring",
+    "the largest stable step of modes is unlimited in free flight, and set by the highest mode on a spring",
     "[modal]") {
   for (const bool pulled : {false, true}) {
     MultiBody body;

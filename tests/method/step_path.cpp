@@ -22,8 +22,9 @@ void stretching_link(MultiBody& body) {
   body.ball("joint", world(0, 0, 0), point(link, 0, kPi));
 }
 
-/// Returns the largest error of the path at three times within one step of h from the start. `evaluations`
-/// receives the number of evaluations that the path needs.
+/// Returns the largest error of the path (the coordinates within a step) at three times within the first
+/// step, of length h. controlled: whether the method also measures the error of the step. `evaluations`
+/// receives the number of additional evaluations that the path needs.
 double error_of(const std::function<void(MultiBody&)>& build, Integrator& method, bool controlled, double h,
                 long* evaluations) {
   MultiBody body;
@@ -61,12 +62,12 @@ double error_of(const std::function<void(MultiBody&)>& build, Integrator& method
 
 }  // namespace
 
-TEST_CASE("the interpolation within a step has the order of its method's path", "[path][long]") {
+TEST_CASE("the interpolation within a step has the order of the dense output of its method", "[path][long]") {
   struct Case {
     std::unique_ptr<Integrator> method;
     bool controlled;
-    double order, h;  ///< of the path over a step; length of the step, s
-    long evaluations;
+    double order, h;   ///< order of the error of the path within one step; length of the longest step, s
+    long evaluations;  ///< additional evaluations of the path
   };
   std::vector<Case> cases;
   cases.push_back({std::make_unique<Dop853>(), false, 8, 0.02, 4});

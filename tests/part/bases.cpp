@@ -1,4 +1,6 @@
-// Global bases of local deformation: orthogonality; the modes of Lamb's sphere, of cylinders and of meshes.
+// Global bases of local deformation (polynomials, modes): orthogonality; the modes of Lamb's sphere, of
+// cylinders and of meshes. Lamb's sphere is a free solid sphere (Lamb 1882) with torsional modes T1, T2, ...
+// and spheroidal modes S1, S2, ...; the number is the degree of the spherical harmonic.
 #include "catch.h"
 
 #include <array>
@@ -38,7 +40,7 @@ VecX<double> etas(int degree, double nu = 0.3) {
   return modal(*part).basis().omega2.cwiseSqrt();
 }
 
-/// Relative errors of the five modes of T2 and of S2, and of the three modes of S1.
+/// Relative errors of the mean frequencies of the five modes T2, the five modes S2 and the three modes S1.
 struct LambErrors {
   double T2, S2, S1;
 };
@@ -82,7 +84,8 @@ TEST_CASE(
       CHECK(basis.omega2.minCoeff() > 0);
       CHECK(std::is_sorted(basis.omega2.begin(), basis.omega2.end()));
 
-      // W^T d is computed from the points of the basis that define phi.
+      // W has the fields of rigid motion and of the parameters: their values at the points of the basis,
+      // projected to the functions of the basis.
       VecX<double> q_s(2);
       q_s << part->parameters().moving(0).rest_value(), part->parameters().moving(1).rest_value();
       std::vector<PointJet<double>> jets;
@@ -122,7 +125,7 @@ TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing converge with 
   CHECK(nearest(etas(7), 4.99551) <= 2e-6);
 }
 
-TEST_CASE("Lamb's sphere by modes of curved elements: consistent mass, fourth order, from above",
+TEST_CASE("Lamb's sphere by modes of curved elements with consistent mass: fourth order, from above",
           "[bases][long]") {
   auto mesh_errors = [](int resolution) {
     const auto part = make_part("ball", "sphere", {}, 1);
@@ -155,14 +158,15 @@ TEST_CASE("polynomials do not lock near nu_P = 1/2", "[bases]") {
   CHECK(harder.segment(5, 5).mean() == Approx(2.6656).epsilon(1e-3));
 }
 
-TEST_CASE("a long cylinder by polynomials: torsion, bending and stretching agree with those of a bar",
+TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending agree with those of a bar",
           "[bases]") {
   const auto part = make_part("bar", "cylinder", {}, 1);
   part->rest({{"a1", 1}, {"a2", 1}, {"a3", 5}}).deform_locally(polynomials(8));
   part->prepare();
   const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt();
   auto nearest = [&](double to) { return (omega.array() / to - 1).abs().minCoeff(); };
-  // G = 1, rho = 1: torsion n pi c / L is exact; bending by Timoshenko's beam, L / r = 10.
+  // G = 1, rho = 1. The frequencies n pi c / L of torsion are exact; those of bending are from Timoshenko's
+  // beam with L / r = 10.
   CHECK(nearest(kPi / 10) <= 1e-6);
   CHECK(nearest(2 * kPi / 10) <= 1e-4);
   const double unit = std::sqrt(2.6 / 4) / 100;
@@ -221,7 +225,8 @@ TEST_CASE("modes of a mesh are those of its elements under the reference conditi
         NodalEnergy::Buffer buffer;
         nodal_local.energies()[0]->add_force(mode, f, buffer, nullptr);
         f += basis.omega2[j] * nodal_local.inertia().cwiseProduct(mode);
-        // The residual is a linear combination of the seven columns of M G0.
+        // The residual is a linear combination of the seven columns of W = M G0; G0 has the fields of six
+        // rigid motions and of a1.
         MatX<double> W = MatX<double>::Zero(3 * n, 7);
         const Nodes& X = nodal_local.mesh().X;
         for (int i = 0; i < 3; ++i) {

@@ -82,7 +82,7 @@ Mat3<double> gradient(const Part& part, const VecMax<double>& q, double u, doubl
          part.material_gradient(u, v, w, part.parameters().rest()).inverse();
 }
 
-/// Returns the energy of a solid by a dense rule over u, v and w, with panels of pi / 4.
+/// Returns the energy of a solid by a dense Gauss rule over u, v and w, with panels of pi / 4 in u and v.
 template <class Law>
 double dense_energy(const Part& part, const Law& law, const VecMax<double>& q, bool torus) {
   const auto rule = gauss_rule(10);
@@ -212,10 +212,10 @@ TEST_CASE("at rest the force is zero, and damping is beta times the stiffness", 
     }
 }
 
-TEST_CASE("a solid sphere by its three scales alone: the frequencies of homogeneous deformation",
+TEST_CASE("a solid sphere with three dynamic semi-axes has the frequencies of homogeneous deformation",
           "[continuum]") {
-  // The deviatoric mode has eta = sqrt(10), breathing has eta^2 = 5 (3 lambda + 2 mu) / mu, eta = omega r /
-  // c_t.
+  // With eta = omega r / c_t (c_t: speed of shear waves), the deviatoric modes have eta = sqrt(10), and the
+  // breathing mode has eta^2 = 5 (3 lambda + 2 mu) / mu.
   for (const std::string& law : kSolidLaws) {
     const double r = 0.7, density = 1000;
     const auto part = make({"ellipsoid", {}, {{"a1", r}, {"a2", r}, {"a3", r}}, {"a1", "a2", "a3"}}, law);
@@ -227,7 +227,7 @@ TEST_CASE("a solid sphere by its three scales alone: the frequencies of homogene
   }
 }
 
-TEST_CASE("a slender bar by its scales: Young's modulus, in the limit of a slender bar", "[continuum]") {
+TEST_CASE("a bar with dynamic semi-axes has Young's modulus in the limit of a slender bar", "[continuum]") {
   // A homogeneous stretch has omega = sqrt(3) c / a3 with c = sqrt(E / rho).
   std::vector<double> error;
   for (const double aspect : {4.0, 8.0, 16.0}) {
@@ -252,8 +252,8 @@ TEST_CASE("a twisted cylinder has the stiffness G J_p / L", "[continuum]") {
 }
 
 TEST_CASE("a bent bar has the stiffness of plane sections with constant shape", "[continuum]") {
-  // Sections do not contract laterally: lambda + 2 mu replaces E. Energy (lambda + 2 mu) I k^2 L / 2, k =
-  // angle / half.
+  // Sections do not contract laterally, so that lambda + 2 mu replaces E. The energy is
+  // (lambda + 2 mu) I k^2 L / 2, with the curvature k = angle / half.
   const double r = 0.05, half = 1, I = kPi / 4 * std::pow(r, 4);
   const auto part =
       make({"cylinder", {"bend"}, {{"a1", r}, {"a2", r}, {"a3", half}}, {"bend.angle"}}, "neo_hookean");

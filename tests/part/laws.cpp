@@ -1,5 +1,5 @@
-// Kinematics of parts, Eqs. (3) and (4): every shape with several chains of deformations, against an
-// independent evaluation in long double.
+// Kinematics of parts, s of Eq. (3) and J of Eq. (9): every shape with several chains of deformations,
+// against an independent evaluation in long double.
 #include "catch.h"
 
 #include <algorithm>
@@ -219,7 +219,7 @@ TEST_CASE(
       if (at[i].w == 1) CHECK((normals[i] - slope.normalized()).norm() <= 1e-9);
       CHECK(normals[i] == part.normal(at[i], values));
     }
-    // The function increases along the normal.
+    // The inside-outside function increases along the normal.
     const Vec3<double> p = s.col(1);
     CHECK(part.inside_outside(p + 1e-3 * normals[1], values) > 0);
     CHECK(part.inside_outside(p - 1e-3 * normals[1], values) < 0);
@@ -343,7 +343,8 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
 
 namespace {
 
-/// Checks all surface functions at these values, also at the ends of the parameter rectangle.
+/// Checks the inside-outside function, the label and the normals on the surface at the rest values, also at
+/// the ends of the ranges of u and v.
 void check_surface(const Part& part, double tolerance) {
   const ParameterValues<double> values = part.parameters().rest();
   std::vector<Material<double>> at;
@@ -376,7 +377,8 @@ TEST_CASE("N10: at the tip of a full taper all surface functions are finite and 
       for (const auto& [tx, ty] : {std::pair(-1.0, -1.0), {1.0, 1.0}, {-1.0, 0.0}, {1.0, -1.0}}) {
         const std::unique_ptr<Part> part = make_part("part", shape, chain, 1000);
         const bool torus = part->shape().mesh() == MeshPattern::torus;
-        // An edge of zero width is the image of lines; the inverse is unique only in its middle.
+        // A taper of one axis alone shrinks an end section to an edge. Each point of this edge is the image
+        // of a line, and the inverse is unique only in the middle of the edge.
         if (tx != ty && (torus || chain[0] == "shear")) continue;
         if (torus) part->rest({{"a3", 2}});
         for (const char* width : {"a1", "a2", "r"})
@@ -416,7 +418,7 @@ TEST_CASE("N11: at the ends of the range of a bend all surface functions are fin
       }
 }
 
-TEST_CASE("N10: the tips of full tapers and the surface of half-turn bends are regular points", "[part]") {
+TEST_CASE("N10: surface functions are correct at the tips of full tapers and on half-turn bends", "[part]") {
   for (const char* shape : {"superellipsoid", "ellipsoid", "capsule"})
     for (double sign : {-1.0, 1.0}) {
       const std::unique_ptr<Part> part = make_part("part", shape, {"taper"}, 1000);
@@ -439,7 +441,7 @@ TEST_CASE("N10: the tips of full tapers and the surface of half-turn bends are r
     }
 }
 
-TEST_CASE("the gradient of the inside-outside function is zero at the centre of a part", "[part]") {
+TEST_CASE("the inside-outside function and its gradient are finite at the centre of a part", "[part]") {
   for (const auto& face : all_shapes()) {
     if (face->mesh() == MeshPattern::torus) continue;
     const std::unique_ptr<Part> part = make_part("part", face->name(), {}, 1000);

@@ -1,4 +1,5 @@
-// Meshes of local deformation: masses and moments, points between nodes, the parameter rectangle.
+// Meshes of local deformation: masses and moments, points between nodes, the parameter rectangle (the ranges
+// of u and v).
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>
@@ -148,6 +149,7 @@ TEST_CASE("the loaded membrane over the rectangle: exact for a linear field, sec
         d[k] = of(angles(local.mesh().nodes[static_cast<std::size_t>(k)]));
       return local.energies()[0]->energy(d);
     };
+    // The energy is 1/2 int (w1 |grad d|^2 + w0 d^2) du dv.
     // d = u: int 1 = 2 pi^2, int u^2 = pi^4 / 6.
     CHECK(energy([](const MaterialAngles& at) { return at.u; }) ==
           Approx(0.5 * (w1 * 2 * kPi * kPi + w0 * std::pow(kPi, 4) / 6)).epsilon(1e-12));

@@ -47,7 +47,7 @@ Inertia<double> at(const Part& part, const test::RandomState& state) {
 
 TEST_CASE("moments of superellipsoids with unit axes agree with tabulated values", "[mass]") {
   struct Row {
-    double eps1, eps2, volume, xx, zz, half_unit;
+    double eps1, eps2, volume, xx, zz, half_unit;  // half_unit: half a unit of the last digit of the volume
   };
   for (const Row& row :
        {Row{1, 1, 4.18879, 0.2, 0.2, 5e-6}, Row{0.5, 0.5, 6.481987, 0.274168, 0.274168, 5e-7},
@@ -106,7 +106,8 @@ TEST_CASE("M_ss of the semi-axes agrees with closed forms", "[mass]") {
 }
 
 TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[mass][long]") {
-  // The mean of ln|cos u|, weighted by x^2, is (psi(2 eps1) - psi(5 eps1 / 2)) / 2.
+  // The mean of ln|cos u|, weighted by x^2, is (psi(2 eps1) - psi(5 eps1 / 2)) / 2; psi is the digamma
+  // function.
   for (double eps : {0.4, 1.0, 1.6}) {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {}, 1);
     part->rest({{"eps1", eps}, {"eps2", 0.8}});
@@ -121,7 +122,7 @@ TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[m
     CHECK(std::abs(now / (xx * mean) - 1) <= 1e-12L);
     // With mu = 1, M(eps1, eps1) = int ((x^2 + y^2) ln^2|cos u| + z^2 ln^2|sin u|) dV. The means of the
     // squared logarithms are second derivatives of the Beta function.
-    // Returns the mean of ln^2|cos u| for the weight cos^(2p-1) sin^(2q-1).
+    // log_square returns the mean of ln^2|cos u| for the weight cos^(2p-1) sin^(2q-1).
     auto log_square = [&](long double p, long double q) {
       const long double first = (test::digamma(p) - test::digamma(p + q)) / 2;
       const long double h = 1e-3L;
@@ -330,7 +331,7 @@ test::RandomState random_in_range(Draws& draws, const Part& part, int corner) {
 }
 
 /// Returns the largest change of M and g_q, relative to their scale, if the number of quadrature nodes along
-/// each direction is doubled. part: prepared. trials: number of states.
+/// each direction is doubled. part: a prepared part. trials: number of states.
 double doubling_error(const Part& part, int trials) {
   Draws draws(3);
   const MassPoints finer = place_mass_points(part, 1);

@@ -1,5 +1,5 @@
-// A deformation that is frozen as the identity has no effect: the part has the mass points and the bits of
-// the part without it.
+// A deformation that is frozen as the identity has no effect: the part has the same mass points and gives the
+// same bits as a part without the deformation.
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>
@@ -67,7 +67,7 @@ TEST_CASE("a shape with all deformations frozen as the identity is bit-identical
     INFO(face->name());
     const std::unique_ptr<Part> with_null_links =
         make_part("part", face->name(), {"twist", "taper", "shear", "bend", "bend_offset"}, 1000);
-    // The direction and position of a zero bend have no effect.
+    // The parameters of the direction and the position of a zero bend have no effect.
     with_null_links->rest({{"bend.direction", 0.3}, {"bend_offset.b2", 0.4}, {"bend_offset.b3", 0.5}});
     const std::unique_ptr<Part> without_links = make_part("part", face->name(), {}, 1000);
     CHECK(with_null_links->parameters().links().empty());

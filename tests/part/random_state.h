@@ -12,19 +12,21 @@
 
 namespace pliant::test {
 
-/// Returns the range of random values of a parameter: its dynamic range; lengths from half to twice their
-/// rest value; bounded for a body of unit size.
+/// Returns the range of random values of a parameter. For lengths it is half to twice the rest value, for
+/// angles the limits of the parameter. Other parameters are also at most max(2, 2 rest value) in absolute
+/// value.
 inline Range range_of(const Parameter& p) {
   if (p.spec->relative) return {0.5 * p.rest_value(), 2 * p.rest_value()};
   const double reach = p.spec->quantity == Quantity::angle ? kInfinity : std::max(2.0, 2 * p.rest_value());
   return {std::max(p.limits.min, -reach), std::min(p.limits.max, reach)};
 }
 
-/// Returns a random value within the range, or one of its ends.
+/// Returns a random value within the range of a parameter.
 inline double draw_value(Draws& draws, const Parameter& p) {
   const Range range = range_of(p);
   return draws.uniform(range.min, range.max);
 }
+/// Returns one of the two ends of the range of a parameter.
 inline double draw_end(Draws& draws, const Parameter& p) {
   const Range range = range_of(p);
   return draws.uniform(0, 1) < 0.5 ? range.min : range.max;

@@ -1,4 +1,5 @@
-// Surface meshes of parts: closed, without duplicates or needles, with the correct volume and normals.
+// Surface meshes of parts: closed, without duplicate vertices or needle triangles, with the correct volume
+// and normals.
 #include "catch.h"
 
 #include <cmath>
@@ -38,7 +39,8 @@ int count_different(const Eigen::Matrix3Xd& x) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});
   return static_cast<int>(all.size());
 }
-/// Returns the mean deviation of corner normals from their triangles, one minus the cosine, weighted by area.
+/// Returns the mean of one minus the cosine between the normal at a corner and the normal of its triangle,
+/// weighted by area.
 double mean_normal_error(const TriangleMesh& mesh) {
   double error = 0, areas = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -76,7 +78,8 @@ std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vect
 
 }  // namespace
 
-TEST_CASE("surfaces are closed, of the correct topology, without duplicates or needles", "[surface]") {
+TEST_CASE("surfaces are closed, of the correct topology, without duplicate vertices or needles",
+          "[surface]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : test::test_chains())
       for (int resolution : {1, 2, 3, 8}) {
@@ -121,7 +124,7 @@ TEST_CASE("N01: exponents of 0.1 and other extremes: closed surfaces, and no deg
                    part->total_mass() -
                1;
       };
-      // Thin spikes at 3 and 5 need many triangles; thin rims at 0.02 are between two of them.
+      // At eps = 3 and 5 the thin spikes need many triangles. At 0.02 the rims are narrower than a triangle.
       CHECK(std::abs(error(32)) < (eps > 3 ? 0.13 : eps > 2 ? 0.01 : 1e-3));
       CHECK(std::abs(error(32)) < 0.5 * std::abs(error(16)));
     }

@@ -1,4 +1,5 @@
-// Laws of every shape in the list: e and its derivatives, its inverse, its gauge.
+// Laws of every shape in the list: e and its derivatives, and the inverse of e. The label of a point x is its
+// material point, with e(label) = x; the gauge of x is the radial coordinate w of this material point.
 #include "catch.h"
 
 #include <cmath>
@@ -125,12 +126,14 @@ TEMPLATE_LIST_TEST_CASE("e and its parameter derivatives agree with long double"
   CHECK(worst_curvature < 1e-12);
 }
 
-TEMPLATE_LIST_TEST_CASE("derivatives by duals agree with those by long double duals", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("derivatives by dual numbers in double and in long double agree", "[shape]",
+                        AllShapes) {
   using Shape = TestType;
   constexpr int K = shape_size<Shape>;
   Draws draws(2);
   test::Worst worst;
-  for (double eps : {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {  // also frozen exponents outside the dynamic range
+  // The extreme exponents are allowed as frozen ones only.
+  for (double eps : {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {
     const ShapeVec<Shape, double> a = with_exponents<Shape>(draw_parameters<Shape>(draws), eps);
     const double size = size_of<Shape>(a);
     for (const Material<double>& m : test_points<Shape>(draws)) {
@@ -263,7 +266,7 @@ TEMPLATE_LIST_TEST_CASE("gauge and label invert e", "[shape]", AllShapes) {
 
 TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with finite differences", "[shape]", AllShapes) {
   using Shape = TestType;
-  // otherwise the gauge is found by iteration, in double precision
+  // Shapes without a closed-form label find the gauge by iteration, in double precision only.
   constexpr bool has_label = detail::has_label<Shape>;
   constexpr Long step = has_label ? 1e-4L : 1e-3L, converged = has_label ? 1e-10L : 1e-7L;
   Draws draws(5);
@@ -345,7 +348,7 @@ TEMPLATE_LIST_TEST_CASE("half_height is the extent along z", "[shape]", AllShape
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("mesh labels are on the surface", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("mesh_label returns material points of the surface", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(8);
   for (double eps : {0.02, 0.1, 0.6, 1.0, 1.9, 5.0}) {

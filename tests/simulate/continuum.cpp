@@ -47,7 +47,8 @@ Drift free_flight_drift(const std::string& law, double beta, int steps) {
           -end.work[static_cast<int>(Work::damping)] / start.energy()};
 }
 
-/// Returns the frequency (1/s) of the mean crossings of a function of the state.
+/// Returns the frequency (1/s) of a function of the state, from the times of its zero crossings over a number
+/// of periods. h: step, s.
 template <class F>
 double frequency(Simulation& simulation, double h, int periods, F&& of_state) {
   double before = of_state(simulation.state()), first = -1, last = -1;
@@ -109,7 +110,7 @@ TEST_CASE("damping of the material removes energy, which the ledger records, and
 }
 
 TEST_CASE("a solid that only spins dissipates nothing, even while it is bent", "[continuum]") {
-  // The velocities of the frame cause no strain rate.
+  // The motion of the frame causes no strain rate.
   MultiBody body;
   Part& part = rubber(body, "neo_hookean", 0.1);
   part.initial_rate({{"a3", 0}, {"taper.tx", 0}, {"shear.sx", 0}});
@@ -120,7 +121,7 @@ TEST_CASE("a solid that only spins dissipates nothing, even while it is bent", "
   CHECK(work.power[static_cast<int>(Work::damping)] == 0);
 }
 
-TEST_CASE("small motion decays at the rate beta omega^2 / 2", "[continuum][motion]") {
+TEST_CASE("the amplitude of small motion decays at the rate beta omega^2 / 2", "[continuum][motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& ball = body.add<Primitive<Sphere>>("ball", 1000);
@@ -135,7 +136,8 @@ TEST_CASE("small motion decays at the rate beta omega^2 / 2", "[continuum][motio
   CHECK(std::log(start / simulation.ledger().energy()) == Approx(beta * omega2 * time).epsilon(2e-2));
 }
 
-TEST_CASE("jvp of an elastic part agrees with finite differences", "[continuum][long]") {
+TEST_CASE("the Jacobian-vector product of an elastic part agrees with finite differences",
+          "[continuum][long]") {
   for (const double beta : {0.0, 3e-3}) {
     MultiBody body;
     rubber(body, "neo_hookean", beta);
@@ -167,7 +169,7 @@ TEST_CASE("a solid that is inverted stops the run with its name", "[continuum][f
   MultiBody body;
   body.gravity.setZero();
   Part& part = test::add(body, "slab", "box", {"bend"}, 1000);
-  // The slab is so thick that every rule has points on the inner side of the fold.
+  // The slab is so thick that every quadrature rule has points in the fold, where the map is inverted.
   part.rest({{"a1", 1.5}, {"a3", 1}}).initial_rate({{"bend.angle", 60}});
   part.elasticity({"neo_hookean", 1e3, 0.3, 0});
   Simulation simulation(body, "rk4");
@@ -200,7 +202,7 @@ TEST_CASE("the predicted stable step of an elastic part agrees with the measured
   }
 }
 
-TEST_CASE("the strain of frozen parameters is not evaluated, and scales need one point",
+TEST_CASE("the strain of frozen parameters is not evaluated, and semi-axes alone need one quadrature point",
           "[continuum][skip]") {
   MultiBody body;
   body.gravity.setZero();
@@ -241,11 +243,12 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
   CHECK(q[1] < 0.95);
 }
 
-TEST_CASE("with a mesh of the same material, frequencies of scales converge to those of Lamb",
+TEST_CASE("with a mesh of the same material, frequencies of the semi-axes converge to those of Lamb",
           "[continuum][motion][long]") {
-  // The modes S2 and breathing of a free solid sphere, nu_P = 0.25 (Lamb 1882). Exact values of omega a /
-  // c_s: 2.63987 and 4.44000; three scales alone give 3.1623 and 5.0. The scales excite the mode; in a part
-  // with frozen scales the nodes do.
+  // The mode S2 and the breathing mode of a free solid sphere, nu_P = 0.25 (Lamb 1882). The exact values of
+  // omega a / c_s (a: radius, c_s: speed of shear waves) are 2.63987 and 4.44000; three semi-axes alone
+  // give 3.1623 and 5.0. The initial values of the semi-axes excite the mode; if they are frozen, the
+  // displacements of the nodes do.
   const double exact[2] = {2.63987, 4.44000}, scales[2] = {std::sqrt(10.0), 5.0};
   auto eta = [](const std::string& law, int mode, int resolution, bool dynamic) {
     MultiBody body;

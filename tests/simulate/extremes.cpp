@@ -1,4 +1,4 @@
-// Extreme models and runs: slender bodies, long runs, decreasing steps, floating-point traps of the hardware.
+// Extreme models and runs: slender bodies, long runs, decreasing steps, floating-point exceptions.
 #include "catch.h"
 
 #include <cfenv>
@@ -15,7 +15,7 @@ namespace extremes_test {
 using namespace pliant;
 
 TEST_CASE("N07: semi-axes that differ by a factor of a million have accurate accelerations", "[extremes]") {
-  // A free spin about z widens a1 and a2 by a_i omega^2, for any values of the other axes.
+  // In a free spin about z, a1 and a2 have the accelerations a_i omega^2, for any values of the other axes.
   for (const Vec3<double>& axes :
        {Vec3<double>(1, 1e-6, 1e-6), Vec3<double>(1e6, 1, 1), Vec3<double>(1e-6, 1, 1e6)}) {
     MultiBody body;

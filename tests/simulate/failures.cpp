@@ -167,7 +167,7 @@ TEST_CASE("parameters without inertia are fixed and named", "[failure]") {
     CHECK(simulation.state().q.allFinite());
     CHECK(simulation.state().v.allFinite());
     CHECK(simulation.ledger().energy() >= 0);
-    // Other motion is not disturbed: the scale keeps its rate.
+    // Other motion is not disturbed: a1 keeps its rate.
     CHECK(simulation.state().v[6] == Approx(0.1).epsilon(1e-2));
     test::run(simulation, 0.1, 100);
     CHECK(simulation.state().q.allFinite());

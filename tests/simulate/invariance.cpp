@@ -71,7 +71,8 @@ TEST_CASE("N62: units that differ by powers of two give identical bits after sca
       INFO(method << " " << u.length << " " << u.mass << " " << u.time);
       bool same = true;
       for (Eigen::Index i = 0; i < plain.q.size(); ++i) {
-        // Part a: c, quaternion, a1 a3 | taper.ty twist bend; part b: c, quaternion.
+        // q has, for part a, c, the quaternion, the lengths a1 and a3, then taper.ty, twist and bend; for
+        // part b, c and the quaternion.
         const bool length = i < 3 || i == 7 || i == 8 || (i >= 12 && i < 15);
         same = same && scaled.q[i] == plain.q[i] * (length ? u.length : 1.0);
       }
@@ -86,8 +87,9 @@ TEST_CASE("N62: units that differ by powers of two give identical bits after sca
 
 namespace {
 
-/// Runs a scene with a deformable part a, a box b and springs, rotated as a whole. reversed: adds the parts
-/// in reverse order. others: adds a third part c, which nothing connects to them. Returns q and v of a and b.
+/// Runs a scene with a deformable part a, a box b and springs, rotated as a whole. Returns q and v of a and
+/// b. reversed: adds the parts in reverse order. others: adds a third part c, which nothing connects to a and
+/// b.
 Result run_rotated(const Eigen::Quaterniond& rotation, const char* method, bool reversed = false,
                    bool others = false) {
   MultiBody body;

@@ -36,7 +36,7 @@ double work(Simulation& simulation, Work kind) {
 }  // namespace
 
 TEST_CASE("a load on a part with prescribed motion moves as on the equivalent moving anchor", "[motion]") {
-  // The point is 0.1 m from the origin of a frame that translates and rotates periodically.
+  // The anchor is 0.1 m from the origin of a frame that translates and rotates periodically.
   const TimeFunction x = wave(0, 0.2, 7), angle = wave(0.3, 1.5, 3);
   const TimeVector anchor(TimeFunction::formula("0.2 * sin(7 * t) + 0.1 * cos(0.3 + 1.5 * sin(3 * t))"),
                           TimeFunction::formula("0.1 * sin(0.3 + 1.5 * sin(3 * t))"), 1);
@@ -71,7 +71,7 @@ TEST_CASE("a load on a part with prescribed motion moves as on the equivalent mo
     }
 }
 
-TEST_CASE("a paddle at constant speed hits a ball with the speed 1 + e times its own", "[motion]") {
+TEST_CASE("a ball leaves a paddle of constant speed at 1 + e times the speed of the paddle", "[motion]") {
   constexpr double kSpeed = 3;
   for (const double e : {0.0, 0.6, 1.0}) {
     MultiBody body;
@@ -130,11 +130,11 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
   }
   CHECK(impulse[2] == Approx(m * (kG + 2) * h).epsilon(1e-2));
   CHECK(work(simulation, Work::contact) == Approx(m * (kG + 0.5 * 4)).epsilon(2e-3));
-  // The position is available for any state.
+  // The model also gives the position of a part with prescribed motion, at the time of the state.
   CHECK(simulation.model().position(simulation.state(), 0)[2] == Approx(0.95));
 }
 
-TEST_CASE("a ball that rolls on a turntable circles at 2/7 of its rate", "[motion][long]") {
+TEST_CASE("a ball that rolls on a turntable circles at 2/7 of the rate of the table", "[motion][long]") {
   constexpr double kRate = 3, kRadius = 0.1, kTurn = 2.0 / 7 * kRate;
   std::vector<double> errors;
   for (const double h : {4e-3, 2e-3, 1e-3}) {

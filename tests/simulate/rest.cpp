@@ -91,7 +91,7 @@ TEST_CASE("N52: a sharp corner, an edge and a tip touch the plane with their low
   struct Orientation {
     const char* name;
     Eigen::Quaterniond R;
-    bool unstable;  // on a point or a line, so that rounding makes the part fall over in time
+    bool unstable;  // the part stands on a point or a line, so that rounding makes it fall over in time
   };
   const std::vector<Orientation> orientations{
       {"face", Eigen::Quaterniond::Identity(), false},
@@ -121,7 +121,8 @@ TEST_CASE("N52: a sharp corner, an edge and a tip touch the plane with their low
       double min_gap = 1;
       for (const Contact& contact : contacts) min_gap = std::min(min_gap, contact.gap);
       CHECK(std::abs(min_gap) < 1e-6 * kSize);
-      // At eps = 2 edge and corner are flat faces of an octahedron; between 1 and 2 they are nearly flat.
+      // At eps = 2 the solid is an octahedron: with its "corner" down it stands on a face, with its "edge"
+      // down on an edge. At 1.99 these places are nearly flat.
       const bool flat = eps > 1 ? std::string(orientation.name) != "face" : !orientation.unstable;
       for (int i = 0; i < 250; ++i) {
         simulation.step(2e-3);
@@ -132,8 +133,9 @@ TEST_CASE("N52: a sharp corner, an edge and a tip touch the plane with their low
     }
 }
 
-TEST_CASE("N56: mass ratios of a million, heavy on light and light on heavy: penetration and rest",
-          "[contact][long]") {
+TEST_CASE(
+    "N56: with mass ratios of a million, heavy on light or light on heavy, boxes rest without deep overlap",
+    "[contact][long]") {
   for (const double ratio : {1e-6, 1e6})
     for (const double h : {1e-3, 2e-3}) {
       MultiBody body;

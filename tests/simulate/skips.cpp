@@ -131,7 +131,7 @@ TEST_CASE("frozen parameters have no columns, and the quadrature rule fits the d
   CHECK(part.rest_inertia().M.rows() == 8);
   CHECK(simulation.model().n_v() == 8);
   CHECK(part.mass_points().rule == "sections");
-  // Scales alone need four points.
+  // Semi-axes alone need four mass points.
   MultiBody scales;
   Part& scaled = test::add(scales, "part", "supertoroid", {}, 1000);
   scaled.make_dynamic({"a1", "a2", "a3"});

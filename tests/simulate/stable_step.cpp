@@ -46,8 +46,8 @@ void check_limit(const std::string& what, const Build& build) {
   }
 }
 
-/// A solid with one elastic scale, with damping by alpha and beta. The motion is so small that it does not
-/// reach a limit.
+/// A solid with one elastic semi-axis, damped by alpha and beta. The motion is so small that the semi-axis
+/// does not reach its limits.
 Build breathing(double stiffness, double alpha, double beta, double drag = 0) {
   return [=](MultiBody& body) {
     auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
@@ -66,8 +66,8 @@ Build ball(double stiffness, double damping) {
 }  // namespace
 
 TEST_CASE("N20: the predicted step of semi-implicit Euler agrees with the closed form", "[stable]") {
-  // omega^2 h^2 + 2 h (nu + beta omega^2) < 4, with omega^2 = 5 k / m, for x'' + (alpha + beta omega^2) x' +
-  // omega^2 x = 0.
+  // The method is stable for x'' + (alpha + beta omega^2) x' + omega^2 x = 0, omega^2 = 5 k / m, if
+  // omega^2 h^2 + 2 h (alpha + beta omega^2) < 4.
   for (double k : {1.0, 1e4})
     for (double alpha : {0.0, 3.0})
       for (double beta : {0.0, 0.01}) {
@@ -148,7 +148,7 @@ TEST_CASE("N19: a spin limits the step to half a radian", "[stable]") {
   const double L = simulation.ledger().angular_momentum.norm();
   for (int i = 0; i < 2000; ++i) simulation.step(10.0 / 130);
   CHECK(simulation.ledger().angular_momentum.norm() == Approx(L).epsilon(1e-9));
-  // Other methods lose the motion, and the failure names a stable step.
+  // RK4 fails, and the message names a stable step.
   MultiBody rk4_body;
   spinning(rk4_body);
   Simulation rk4_run(rk4_body, "rk4");
@@ -162,8 +162,8 @@ TEST_CASE("N19: a spin limits the step to half a radian", "[stable]") {
   CHECK(message.find("the largest stable step here is about") != std::string::npos);
 }
 
-/// A chain of points that hangs on rods of 1 m, in a field of 1 m/s^2. The last point starts with a
-/// horizontal velocity.
+/// A chain of n small balls on rods of 1 m, which hangs in a gravity of 1 m/s^2. The last ball starts with a
+/// horizontal velocity, m/s.
 void hanging_chain(MultiBody& body, int n, double velocity = 0) {
   body.gravity = {0, 0, -1};
   const Part* above = nullptr;
@@ -178,7 +178,8 @@ void hanging_chain(MultiBody& body, int n, double velocity = 0) {
 }
 
 TEST_CASE(
-    "N20: joints under load: the largest omega^2 of a hanging chain is a root of the Laguerre polynomial",
+    "N20: joints under load: the largest omega^2 of a hanging chain is the largest root of a Laguerre "
+    "polynomial",
     "[stable]") {
   for (const auto& [n, root] : {std::pair<int, double>{1, 1}, {2, 3.414213562373}, {5, 12.640800844276}}) {
     MultiBody body;

@@ -64,7 +64,9 @@ struct Shot {
   Vec3<double> from, velocity;
   double step, lengths_per_step;  ///< step, s; displacement in a step, in lengths
 };
-/// Draws a shot from above at a point near the origin, which it reaches within about a step.
+/// Draws a shot from above at a point near the origin, which it reaches within about a step. min_lengths,
+/// max_lengths: range of the displacement in a step, in lengths. speed: m/s. offset: largest coordinate of
+/// that point, m.
 Shot draw(double min_lengths, double max_lengths, double speed, double offset, Draws& draws) {
   Shot shot;
   shot.lengths_per_step = std::exp(draws.uniform(std::log(min_lengths), std::log(max_lengths)));
@@ -95,7 +97,7 @@ Vec3<double> mean_position(const Simulation& simulation, int part) {
 
 struct ShotResults {
   int hits = 0, passes = 0, refused = 0;
-  double deepest = 0;  ///< deepest overlap with walls, in lengths
+  double deepest = 0;  ///< deepest overlap at the end of a shot, in lengths
 };
 ShotResults shoot(const std::string& kind, const std::string& at, int shots, double max_lengths, double speed,
                   Draws& draws) {
@@ -123,7 +125,7 @@ ShotResults shoot(const std::string& kind, const std::string& at, int shots, dou
       const Vec3<double> along = shot.velocity.normalized(), x = mean_position(simulation, 0);
       passed = x[2] < 0;
       if (pair && hit) {
-        // A part that is deflected may overtake the other in the rest of its step, but only beside it.
+        // A deflected part may overtake the other part in the rest of the step, but only beside it.
         const Vec3<double> d = x - mean_position(simulation, 1);
         const double ahead = d.dot(along);
         passed = ahead > 0 && (d - ahead * along).norm() < 0.04;
@@ -207,7 +209,8 @@ TEST_CASE("N53: a step of thousands of lengths is refused, and a hundredth of th
 }
 
 TEST_CASE("N53: thin plates that fall from rest or are pushed do not pass through thin tables", "[contact]") {
-  // The motion starts at rest, so that the velocity does not bound the displacement in a step.
+  // The motion starts at rest, so that the velocity at the start of a step does not bound the displacement in
+  // it.
   for (const double h : {1e-2, 2e-2, 3e-2})
     for (const double gap : {1e-4, 3e-4, 2e-3})
       for (const bool pushed : {false, true}) {

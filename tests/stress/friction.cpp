@@ -115,7 +115,7 @@ TEST_CASE("friction between parts dissipates the energy of their relative motion
     CHECK(simulation.state().v[6] == Approx(1.5 * m / (m + M)).epsilon(1e-12));
     check_friction(simulation, 0.5 * m * M / (m + M) * 1.5 * 1.5);
   }
-  SECTION("a belt accelerates a load: half of its work is kinetic energy of the load") {
+  SECTION("a belt accelerates a load: half of the work of the belt is kinetic energy of the load") {
     MultiBody body;
     body.contact.active = true;
     body.contact.friction = kMu;
@@ -146,7 +146,8 @@ TEST_CASE("forces and torques that press a part onto a floor do no work, and the
       body.torque("turned", block, Vec3<double>(0.3, 0.2, 0));
       Simulation simulation(body, method);
       test::run(simulation, 0.3, 300);
-      // About 94 N times 1e-10 of the rest tolerance has been observed; 3 J are dissipated.
+      // About 94 N times 1e-10 m has been observed, within the tolerance of resting contacts. Friction
+      // dissipates 3 J if the block moves.
       CHECK(std::abs(work(simulation, Work::forces)) < 1e-7);
       CHECK(std::abs(work(simulation, Work::contact)) < 1e-7);
       CHECK(std::abs(simulation.ledger().balance) < 1e-9);

@@ -166,8 +166,8 @@ TEST_CASE("N60: the ends of a slack string pass each other, and the string stops
 TEST_CASE(
     "a string becomes slack where the tension of a swing vanishes, and taut again at the end of the fall",
     "[joints]") {
-  // A start at the bottom with v^2 = 3.5 g l reaches slackness at the height (v^2 / (g l) - 2) / 3 l above
-  // the hook.
+  // The mass starts at the bottom with v^2 = 3.5 g l. The string becomes slack when the mass is
+  // (v^2 / (g l) - 2) / 3 l above the hook.
   const double l = 1, g = 9.81;
   for (const double h : {2e-3, 1e-3, 5e-4}) {
     MultiBody body;

@@ -22,7 +22,7 @@ using test::Draws;
 namespace {
 
 constexpr double kSize = 0.1;  // the largest semi-axis, m
-/// Overlapping parts are separated by this number of sizes a second.
+/// Overlapping parts are separated with this relative speed, in sizes of the smaller part a second.
 constexpr double kSeparationSpeed = 1;
 
 Part& add_part(MultiBody& body, const std::string& name, const std::string& shape) {
@@ -88,7 +88,7 @@ Part& ball(MultiBody& body, const std::string& name, const std::string& kind, co
   part.deform_locally(settings);
   return part;
 }
-/// Results of the separation of two such balls.
+/// Results of the separation of two balls of `ball`.
 struct Separation {
   double first_overlap = 0;  // overlap at the start, m
   double fastest = 0;        // relative speed of their centres while the overlap is deep, sizes a second
@@ -158,7 +158,7 @@ TEST_CASE("N54: deep overlaps are separated at their own speed, independent of m
         .norm();
   };
   simulation.step(h);
-  REQUIRE(std::abs(simulation.state().v[6 * 10]) < 50);  // it has hit the wall
+  REQUIRE(std::abs(simulation.state().v[6 * 10]) < 50);  // the fast ball has hit the wall
   CHECK(between(0, 1) == Approx(kSize + kSeparationSpeed * kSize * h).epsilon(1e-9));
   CHECK(between(2, 3) == Approx(2 * kSize).epsilon(1e-12));
   simulation.step(h);
@@ -250,7 +250,7 @@ TEST_CASE("N54: a soft part that overlaps another is separated from it while joi
   const Separation separation = separate_balls(simulation, 2, 1e-3);
   CAPTURE(separation.added, separation.ledger.work[static_cast<int>(Work::contact)],
           separation.ledger.balance);
-  // Higher impact speeds on the floor permit more.
+  // On the floor the parts also move by gravity and impacts, so that no bound is specified.
   if (body.gravity.isZero()) CHECK(separation.fastest < 2.5 * kSeparationSpeed);
   CHECK(separation.distance > 1.8 * kSize);
   CHECK(separation.overlap < 1e-3 * kSize);
@@ -311,7 +311,7 @@ TEST_CASE("N54: parts of other shapes with small overlaps are separated at a bou
         for (const int i : {0, 1})
           add_part(body, "part" + std::to_string(i), shape).place(i * distance * along, R[i]);
       };
-      double distance = 1, inside = 0;  // distance at which they touch, by bisection
+      double distance = 1, inside = 0;  // distance at which the parts touch, m, by bisection
       for (int k = 0; k < 20; ++k) {
         const double middle = 0.5 * (distance + inside);
         MultiBody body;
@@ -337,7 +337,7 @@ TEST_CASE("N54: a rigid part is lifted out of the floor, and the ledger records 
       const double start = simulation.ledger().energy();
       const State first = simulation.state();
       test::run(simulation, h, 1);
-      // The displacement also contains the fall of the step, at the velocity at its end.
+      // The displacement may also contain the fall in the step, with the velocity at the end of the step.
       CHECK(simulation.state().q[2] - first.q[2] <= h * kSeparationSpeed * kSize + 2.01 * 9.81 * h * h);
       test::run(simulation, 0.4 - h, static_cast<int>(std::lround(0.4 / h)) - 1);
       const Ledger ledger = simulation.ledger();
