@@ -1,4 +1,5 @@
-// Reads the record, the scene and the recording of a run, and checks that they belong together.
+// Reads the record (run.json), the scene and the recording (tables of states) of a run, and checks that they
+// belong together.
 #include "open_run.h"
 
 #include <pliant/io/format/number_text.h>
@@ -30,7 +31,8 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
   run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
-  // A run that was killed may have lost states that were not yet on the disk. A run that ended cannot have.
+  // A run that was killed may have lost states that were not yet on the disk. A run that ended has written
+  // all its states.
   if (run.record.status != pliant::RunRecord::Status::running && run.recording->rows() < run.record.states)
     throw pliant::RecordingMismatch(
         "the recording in " + folder.string() + " is damaged: its tables contain " +

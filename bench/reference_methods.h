@@ -1,6 +1,6 @@
 // Reference solutions of smooth motions to nearly full precision, by two methods of order 8. The engine
-// contains neither method. They need hundreds of evaluations where RK4 needs millions. Both use accelerations
-// only, without projection.
+// contains neither method. At this precision they need hundreds of evaluations, RK4 needs millions. Both
+// integrate the accelerations of the engine and do not project joints.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace pliant::bench {
 
-/// The motion y = (q, v) from an initial state. The modes of its limits and joints do not change.
+/// The motion y = (q, v) from an initial state. Limits stay active or inactive, and joints keep their
+/// JointMode, as in the initial state.
 class SmoothMotion {
  public:
   SmoothMotion(const Dynamics& dynamics, const State& start)
@@ -24,8 +25,8 @@ class SmoothMotion {
   VecX<double> v() const { return y_.tail(y_.size() - n_q_); }
   /// Advances from time t to t + h.
   void step(double t, double h) {
-    // The change within a step is computed separately from y, so that the rounding of y does not affect it.
-    // The sum is Kahan's compensated sum.
+    // The change of y within a step is computed separately from y, so that the rounding of y does not affect
+    // it. It is added to y by Kahan's compensated summation.
     const VecX<double> compensated = change(t, h) + compensation_;
     const VecX<double> sum = y_ + compensated;
     compensation_ = compensated - (sum - y_);
@@ -33,8 +34,10 @@ class SmoothMotion {
   }
 
  protected:
+  /// Returns y(t + h) - y(t).
   virtual VecX<double> change(double t, double h) = 0;
   const VecX<double>& y() const { return y_; }
+  /// Returns y_dot at (t, y).
   VecX<double> rates(double t, const VecX<double>& y) {
     q_ = y.head(n_q_);
     v_ = y.tail(y.size() - n_q_);
@@ -92,8 +95,8 @@ class Extrapolation final : public SmoothMotion {
 class Collocation final : public SmoothMotion {
  public:
   Collocation(const Dynamics& dynamics, const State& start) : SmoothMotion(dynamics, start) {
-    // The zeros of the Legendre polynomial of degree 4; integrals of the Lagrange polynomials up to each
-    // zero, and up to 1.
+    // Nodes c: the zeros of the Legendre polynomial of degree 4, on [0, 1]. Coefficients a, b: integrals of
+    // the Lagrange polynomials from 0 to each node, and from 0 to 1.
     const double near = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)),
                  far = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
     c_ = (Weights(-far, -near, near, far).array() + 1) / 2;
@@ -124,9 +127,9 @@ class Collocation final : public SmoothMotion {
       if (!(change_norm < smallest_change)) break;
       smallest_change = change_norm;
     }
-    // A diverging iteration gives no solution. The threshold is not smaller because four-bars, near its
-    // singular positions, does not converge to 1e-8. The comparison with the other method shows the accuracy
-    // of a solution.
+    // If the iteration diverges, there is no solution. The threshold is large because the iteration does not
+    // converge to 1e-8 for the problem "four-bars" (problems.h) near its singular positions. The accuracy of
+    // a solution is known from its comparison with that of the other method.
     if (!(smallest_change <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }

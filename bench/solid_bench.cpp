@@ -1,10 +1,11 @@
-// Time of one force evaluation of solid energies by element, law, size and threads. CSV to standard output,
-// after a comment about the columns. Operations are counted by evaluating the formulas of an
-// element with a counting number type. Bytes are those that pass through memory if caches do not retain data:
-// constants of the points, node numbers, forces written and read back, coordinates and forces once for each
-// node. The bandwidth is that of a triad over as many bytes, in the same cache.
+// Measures the time of one force evaluation of solid energies by element, law, size and number of threads.
+// The program prints CSV after a comment about the columns. Operations are counted by evaluating the formulas
+// of an element with a counting number type. Bytes are the memory traffic of an evaluation without reuse of
+// data in caches: the constants of the quadrature points, the node numbers, element forces written and read
+// back, and the coordinates and forces of each node once. The triad bandwidth (STREAM: a = b + s c) is
+// measured by one thread on arrays with that many bytes in total, which fit into the same level of cache.
 //
-//   solid_bench [FOLDER]     writes solid_bench.csv to FOLDER as well
+//   solid_bench [FOLDER]     also writes solid_bench.csv to FOLDER
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -38,7 +39,8 @@ Mesh sphere(int resolution, Solid::Order order) {
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements()};
 }
 
-/// Returns the operations of one element: the kernel of SolidEnergy with a counting number type.
+/// Returns the number of operations of one element. It runs the kernel of SolidEnergy with a counting number
+/// type.
 template <class Element, class Law>
 long operations() {
   using bench::Counted;
@@ -55,7 +57,8 @@ long operations() {
   for (const TetrahedronPoint& at : Element::rule) {
     Mat3<Counted> G = product(Element::gradient(at, x), inverse);
     const long before = Counted::operations;
-    if (Law::of == NodalEnergy::Of::position) G = inverse;  // near rest, as in most runs
+    // A law of positions gets F = I, since most runs are near rest. Setting it is not counted.
+    if (Law::of == NodalEnergy::Of::position) G = inverse;
     Counted::operations = before;
     Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse),
                               f);
@@ -113,8 +116,8 @@ void measure_law(const char* name, const Mesh& mesh, const Machine& machine, ben
 template <class Element>
 void measure_all(const Mesh& mesh, const Machine& machine, bench::TableFile& file) {
   measure_law<Element, LinearLaw>("linear", mesh, machine, file);
-  // In addition to the linear energy: the volume change of an element and the forces of its mean dilatation,
-  // 6 and 3 operations per corner.
+  // Operations added to those of the linear energy: 6 per node of an element for its volume change, and 3 per
+  // node for the forces of its mean dilatation.
   constexpr long N = Element::n_nodes;
   const AveragedLinearSolid<Element> averaged(mesh.rest, mesh.elements, kMaterial);
   measure({"averaged_linear", N, operations<Element, LinearLaw>() + 9 * N,
@@ -132,8 +135,8 @@ int main(int argc, char** argv) {
     const Machine machine{bench::multiply_add_peak()};
     char head[512];
     std::snprintf(head, sizeof head,
-                  "# one core: %.2f 1e9 multiply-adds/s; shares: of the peak of the cores in use, of the "
-                  "bandwidth of one triad\n"
+                  "# peak of one core: %.2f 1e9 multiply-adds/s; share_of_peak: of the peak of all cores in "
+                  "use; share_of_bandwidth: of the triad bandwidth of one core\n"
                   "law,element_nodes,elements,nodes,threads,ns_per_element,operations,bytes,gflops,gb_per_s,"
                   "triad_gb_per_s,share_of_peak,share_of_bandwidth\n",
                   machine.multiply_adds * 1e-9);

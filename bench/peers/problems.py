@@ -1,6 +1,7 @@
 """The rigid problems of bench/linkage.h and bench/problems.h, generated from their parameters.
 
-SI units; quaternions w x y z, body to world; the body frame is central and principal.
+Units are SI. Quaternions are (w, x, y, z) and rotate from the body frame to the world. The body frame has its
+origin at the centre of mass and its axes along the principal axes.
 """
 from dataclasses import dataclass, field
 
@@ -18,13 +19,13 @@ class Body:
     inertia: np.ndarray  # diagonal
     pos: np.ndarray
     quat: np.ndarray
-    vel: np.ndarray = field(default_factory=lambda: np.zeros(3))  # of the centre
-    omega: np.ndarray = field(default_factory=lambda: np.zeros(3))  # world axes
+    vel: np.ndarray = field(default_factory=lambda: np.zeros(3))  # of the centre of mass
+    omega: np.ndarray = field(default_factory=lambda: np.zeros(3))  # in the world frame
 
 
 @dataclass
 class Joint:
-    """Ball joint: point ra of body a on point rb of body b, in their frames; the world is body -1."""
+    """A ball joint of point ra of body a and point rb of body b, each in the frame of its body; the world is -1."""
 
     a: int
     ra: np.ndarray
@@ -44,7 +45,7 @@ class Problem:
     def tree(self):
         """Returns the joints of a spanning tree of minimum depth with the world as root, and the loop-closing joints.
 
-        A joint of the tree is (parent, its point, child, its point). Joints of a subtree are consecutive. A free
+        A joint of the tree is (parent, point of the parent, child, point of the child). Joints of a subtree are consecutive. A free
         body has no joint.
         """
         joints_at = {}

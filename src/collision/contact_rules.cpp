@@ -1,4 +1,4 @@
-// Resolution of the names in ContactSettings to the rule of each pair.
+// Finds the rule of each pair of things from the names in ContactSettings.
 #include <pliant/collision/contact_rules.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ ContactRules::ContactRules(const Model& model)
   auto number = [&](const std::string& name, const char* what) {
     const auto found = numbers.find(name);
     if (found == numbers.end())
-      throw std::invalid_argument("contact: '" + name + "' is named, but there is no " + what +
+      throw std::invalid_argument("contact: a pair or a group names '" + name + "', but there is no " + what +
                                   " with this name");
     return found->second;
   };
@@ -113,8 +113,8 @@ ContactRule ContactRules::on_fixed(int part, int thing) const {
 }
 
 /// Returns the pair of the settings that applies to two things; nullptr if there is none. A pair that names
-/// both has priority over one that names a group, and that over one that names two groups; later pairs have
-/// priority over earlier ones.
+/// both things has priority over a pair that names one thing and a group. The latter has priority over a pair
+/// of two groups. Among pairs of one kind, the last one in the settings applies.
 const ContactPair* ContactRules::pair(int a, int b) const {
   if (last_pair_.empty()) return nullptr;
   const std::vector<int>&of_a = groups_of_[at(a)], &of_b = groups_of_[at(b)];
@@ -129,7 +129,7 @@ const ContactPair* ContactRules::pair(int a, int b) const {
   return last < 0 ? nullptr : &model_->body().contact.pairs[at(last)];
 }
 
-/// Returns the number of the last pair with exactly these names; -1 if there is none.
+/// Returns the number (in the settings) of the last pair with exactly these two names; -1 if there is none.
 int ContactRules::number_of(int a, int b) const {
   const auto found = last_pair_.find(in_order(a, b));
   return found == last_pair_.end() ? -1 : found->second;

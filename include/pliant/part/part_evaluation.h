@@ -1,7 +1,8 @@
-// The evaluation of a part at given values of its parameters: the reference shape s, its derivatives J =
-// ds/dq_s and Jdot qs_dot (Eqs. (1)-(10)), normals, the inverse map, and the mass matrix M and the inertial
-// forces g_q of Eq. (11). It is the second base class of Part (part.h). Bodies: part_evaluation-inl.h
-// (geometry), inertia-inl.h (M and g_q).
+// The evaluation of a part at given values of its parameters: the reference shape s (Eq. (3)), its
+// derivatives J = ds/dq_s and Jdot q_s_dot (Eqs. (7)-(9)), normals, the inverse map, and the mass matrix M
+// and the inertial forces g_q of Eq. (11). Part (part.h) derives from PartEvaluation, which derives from
+// PartDescription. The functions are implemented in part_evaluation-inl.h (geometry) and inertia-inl.h (M and
+// g_q).
 #pragma once
 
 #include <memory>
@@ -27,9 +28,9 @@ class PartEvaluation : public PartDescription {
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes g_q alone, of a rigid part. The other fields of out stay as evaluate_inertia() left them.
+  /// Computes only g_q, for a rigid part. The other fields of out keep the values from evaluate_inertia().
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
-  /// Computes position, J and rates of material points in the body frame.
+  /// Computes s, J, J q_s_dot and Jdot q_s_dot of material points, in the body frame.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
               const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
   void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
@@ -42,17 +43,17 @@ class PartEvaluation : public PartDescription {
   /// Returns the derivative of s along the direction of the dual parts of the values: 3 x n.
   Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
                            const ParameterValues<Dual<1>>& values) const;
-  /// Returns the derivative of the chain of deformations at undeformed points e (3 x n), one 3 x 3 matrix
-  /// each.
+  /// Returns the derivative dT/de of the chain of deformations at each undeformed point e (3 x n): 3 x 3
+  /// matrices.
   std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
                                            const ParameterValues<double>& values) const;
-  /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where those of the trigonometric
-  /// map are (exponents below 1).
+  /// Returns ds/d(u, v, w) at a material point, 3 x 3. If an exponent of a superquadric is below 1, entries
+  /// are infinite where the derivatives of e(u; a) are.
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
   /// Returns the inside-outside function at a point p: w - 1 of its material point, found by the inverse
   /// deformations. It is zero on the surface and negative inside.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
-  /// Returns its gradient, 1/m; at the tip of a full taper the limit along z.
+  /// Returns the gradient of inside_outside(), 1/m. At the tip of a full taper it is the limit along z.
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Returns the unit outward normal at a material point of the surface. Where the deformation maps a whole
   /// section to one point (the tip of a full taper), it is the limit along z.
@@ -61,28 +62,30 @@ class PartEvaluation : public PartDescription {
                                     const ParameterValues<double>& values) const;
   /// Returns whether some of the surface is turned inside out at these values of the dynamic parameters.
   bool folded(const VecMax<double>& q_s) const;
-  /// Returns the material point at a point p of the part.
+  /// Returns the material point (u, v, w) with s(u, v, w) = p: the inverse map.
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
   // The kernels, for batches of material points. Primitive implements them.
 
-  /// Computes position, J and rates of material points, up to the level of the batch.
+  /// Computes s, and as batch.level requires J, J q_s_dot and Jdot q_s_dot, of material points
+  /// (deform/jet.h).
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
-  /// Computes them with their derivatives along the dual parts of the values and of the material points.
+  /// Computes these quantities and their derivatives along the dual parts of the values and of the material
+  /// points.
   virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
                     JetBatch<Dual<1, Pack>>& batch) const = 0;
-  /// Computes them with their derivatives along the dual parts of the values.
+  /// Computes these quantities and their derivatives along the dual parts of the values.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
             JetBatch<Dual<1, Pack>>& batch) const;
 
  protected:
   using PartDescription::PartDescription;
 
-  /// Applies the chain of deformations alone: propagates seeded jets through all links at constant
-  /// parameters.
+  /// Applies only the chain of deformations T, at constant parameters. On input the jets have points e and
+  /// the columns of J to propagate; on output, T(e) and dT/de times these columns.
   virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
-  /// Applies the inverse of the chain to a point.
+  /// Returns the undeformed point e with T(e) = p.
   virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
   PartConstants constants_;
@@ -91,7 +94,8 @@ class PartEvaluation : public PartDescription {
   template <class P>
   void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                            Inertia<P>& out, Counters& counters) const;
-  /// Returns the undeformed point that the chain maps to p.
+  /// Returns undeform(p), except where T maps a whole end section to p: there, the point of the section on
+  /// the surface.
   Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
 };
 

@@ -1,4 +1,4 @@
-// Reading triangle meshes of obstacles from files: OBJ, PLY, STL, glTF.
+// Reads triangle meshes of obstacles from files: OBJ, PLY, STL, glTF.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,16 @@
 
 namespace pliant {
 
-/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have one position.
+/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have the
+/// same position.
 struct MeshFile {
-  Eigen::Matrix3Xd vertices;   ///< in the units of the file, single precision
+  Eigen::Matrix3Xd vertices;   ///< in the units of the file, rounded to single precision
   Eigen::Matrix3Xi triangles;  ///< three column numbers of `vertices` per triangle
 };
 
-/// Reads all meshes of a file, each transformed by its nodes. Throws FileError if the file cannot be read and
-/// std::invalid_argument if it is not a mesh. ObstacleMesh checks the topology of the result.
+/// Reads all meshes of a file and transforms each to the frame of the file (glTF places meshes by a tree of
+/// nodes). Throws FileError if the file cannot be read, and std::invalid_argument if it contains no valid
+/// mesh. ObstacleMesh checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
 
 /// Returns the file name under which a run stores the mesh of an obstacle in its folder.

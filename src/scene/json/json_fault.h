@@ -1,4 +1,4 @@
-// Messages for a text that is not JSON: the fault and its correction.
+// Messages for a text that is not valid JSON. A message names the fault and its correction.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace pliant::json {
 
 /// A fault of the text.
 struct Fault {
-  std::size_t offset;  ///< byte
-  std::string pointer;
+  std::size_t offset;   ///< number of the byte in the text, from 0
+  std::string pointer;  ///< JSON Pointer (RFC 6901) of the faulty value; empty if it is not known
   std::string message;
 };
 
@@ -28,11 +28,11 @@ struct Progress {
   std::function<std::string(std::size_t)> place;  ///< converts an offset to words, "line 3, column 5"
 };
 
-/// Returns the fault at which the parser stopped; its pointer is empty.
+/// Returns the fault at which the parser stopped. Its JSON Pointer is empty.
 Fault explain(const Progress& progress);
 
-/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16),
-/// and sets *fault.
+/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16).
+/// If so, stores the fault in *fault.
 bool is_foreign(std::string_view text, Fault* fault);
 
 }  // namespace pliant::json

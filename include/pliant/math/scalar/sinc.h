@@ -1,5 +1,5 @@
-// sin(x)/x and atan(x)/x. All derivatives are finite and exact to rounding at x = 0: a power series near 0,
-// the quotient elsewhere.
+// sin(x)/x and atan(x)/x. They and their derivatives are finite and exact to rounding at x = 0 too. sin(x)/x
+// is a power series for |x| <= 1 and the quotient elsewhere.
 #pragma once
 
 #include <pliant/math/scalar/dual.h>
@@ -16,7 +16,8 @@ struct Derivatives {
 /// Returns sin(x) / x and its derivatives, from x and its sine and cosine.
 template <class T>
 Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& sin_cos_x) {
-  // c_k = (-1)^k / (2k+1)!; value S(y) at y = x^2, first 2 x S', second 2 S' + 4 y S''
+  // S(y) = sum c_k y^k with c_k = (-1)^k / (2k+1)! and y = x^2. The value is S, the first derivative 2 x S',
+  // the second 2 S' + 4 y S''.
   constexpr double c[] = {1.,
                           -1. / 6,
                           1. / 120,
@@ -62,8 +63,8 @@ Taylor2<T> sinc(const Taylor2<T>& x, const math::SinCos<Taylor2<T>>& sin_cos_x) 
 /// Returns atan(x) / x.
 template <class T>
 T atan_over(const T& x) {
-  // Three halvings, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), reduce the argument below 0.2; then the series
-  // converges.
+  // The identity atan x = 2 atan(x / (1 + sqrt(1 + x^2))), used three times, reduces the argument below 0.2.
+  // There, 13 terms of the power series give full precision.
   T y = x;
   T factor(1);
   for (int i = 0; i < 3; ++i) {

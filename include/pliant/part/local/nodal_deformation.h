@@ -1,14 +1,15 @@
 // Local deformation at the nodes of a mesh: q_d = d at the nodes, in the body frame of the part. The
 // reference conditions are those of mean axes at the current shape (include/pliant/part/local/README.md):
-//   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
-// Let F be all forces on the nodes, F_d those of them that act on d alone, and f_r the generalised forces on
-// (c, theta, q_s) besides those of the nodes. Then
-//   K kappa = sum G^T F_d - f_r,            K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
+//   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]      k: nodes
+// Let F be all forces on a node, and F_d those that act on d alone (elasticity that is quadratic in d, and
+// the damping of d_dot). Let f be the generalised forces on (c, theta, q_s) that do not act on nodes. Sums
+// are over nodes. Then
+//   K kappa = sum G^T F_d - f,              K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
 //   m y = F - W kappa
 //   K^T a_r = sum W^T y + 2 sum Wdot^T ddot + sum Wddot^T d
 //   d_ddot = y - G a_r
-// with G = [I, -[p]x, J] and p = s + d. No matrix of mesh size is formed. nodal_dynamics-inl.h has the
-// stages.
+// with G = [I, -[p]x, J], p = s + d and the multipliers kappa of the conditions. No matrix of mesh size is
+// formed. nodal_dynamics-inl.h has the stages.
 #pragma once
 
 #include <optional>
@@ -24,31 +25,31 @@ namespace pliant {
 
 struct NodalWorkspace final : LocalWorkspace {
   // Stage positions().
-  VecX<double> x;      ///< positions p = s + d of the nodes, then the coordinates that an energy adds
+  VecX<double> x;      ///< p = s + d of the nodes, then the own coordinates of an energy (nodal_energy.h)
   Nodes s;             ///< reference shape
   Nodes u;             ///< velocity J q_s_dot + d_dot; empty if no parameter is dynamic, see rates_of_p()
-  MatX<double> J;      ///< 3N x n_s: columns of all nodes along x, then y, then z, for each parameter
-  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot; s2 is empty if s is linear in q_s
+  MatX<double> J;      ///< 3N x n_s: a column for each parameter; x of all N nodes, then y, then z
+  Nodes s1, s2;        ///< s1 = J q_s_dot, s2 = Jdot q_s_dot; s2 is empty if s is linear in q_s
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // Stage masses().
   VecMax<double> unmet;  ///< W^T d; zero if the reference conditions hold
-  VecMax<double> scale;  ///< scales the diagonal of H0 to 1
+  VecMax<double> scale;  ///< K is scaled by it on both sides, as H0 is to a unit diagonal; H0 = M at d = 0
   /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // Stage forces(), N.
-  VecX<double> x_dot;     ///< rates of x in the body frame, for damping
-  VecX<double> f, f_d;    ///< of energies of positions; of energies of d, which act on d alone
+  VecX<double> x_dot;     ///< rates of x in the body frame, for damping of energies of positions
+  VecX<double> f, f_d;    ///< f: forces of energies E(p); f_d: of energies E(d), which act on d alone
   VecMax<double> of_d;    ///< sum G^T F_d
   VecMax<double> of_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
-  VecMax<double> kappa;
-  // Joints: kappa and a_r by unit impulses on v_r and on the shared points.
+  VecMax<double> kappa;  ///< multipliers of the reference conditions
+  // Joints. Column k: kappa and a_r for a unit impulse on entry k of (v_r, the points at joints).
   MatX<double> kappa_of, a_of;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
-  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() keeps while it finds the frame
+  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() saves while it finds the frame
 
   /// Returns J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
@@ -79,8 +80,8 @@ class NodalDeformation final : public LocalDeformation {
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
-  /// Diagonal of the mass matrix of the local coordinates: three numbers a node, then those of coordinates
-  /// that an energy adds.
+  /// Diagonal of the mass matrix of the local coordinates: three numbers for each node, then the inertia of
+  /// the own coordinates of an energy (NodalEnergy::own_inertia()).
   const VecX<double>& inertia() const { return inertia_; }
   /// 1 / inertia.
   const VecX<double>& mobility() const { return mobility_; }
@@ -113,17 +114,17 @@ class NodalDeformation final : public LocalDeformation {
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
-  /// The workspace that workspace() made.
+  /// Returns a workspace that workspace() made, by its actual type.
   static NodalWorkspace& of(LocalWorkspace& work) { return static_cast<NodalWorkspace&>(work); }
   static const NodalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const NodalWorkspace&>(work);
   }
-  /// The violation of the reference conditions of rigid motion.
+  /// The violation of the six reference conditions of rigid motion.
   struct Unmet {
     Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
     Mat3<double> d_s;               ///< sum m d s^T
   };
-  /// Returns the violation by displacements and their rates.
+  /// Returns the violation by displacements d and their rates d_dot.
   Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
               const LocalWorkspace& work) const;
   /// Returns sum W^T a over nodes.
@@ -143,7 +144,7 @@ class NodalDeformation final : public LocalDeformation {
                          const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
   /// Computes positions and rates if s is linear in q_s.
   void linear_positions(const VecX<double>& q_s, const VecMax<double>& q_s_dot, NodalWorkspace& w) const;
-  /// Computes f and f_d of the energies with their damping.
+  /// Computes f and f_d of the workspace: the elastic forces with their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
   /// Adds beta times the viscous forces of the energies to f and f_d.
   void add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const;
@@ -160,8 +161,8 @@ class NodalDeformation final : public LocalDeformation {
   std::optional<Linear> linear_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
-  bool of_positions_ = false;  // whether an energy is of positions
-  std::string laws_;           // names of the laws
+  bool of_positions_ = false;  // whether an energy depends on positions, E(p)
+  std::string laws_;           // names of the elastic laws, for description()
 };
 
 }  // namespace pliant
