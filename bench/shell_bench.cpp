@@ -1,9 +1,10 @@
-// Time per triangle of a force evaluation for each shell energy, on spheres. CSV to standard output. Further
-// columns: the multiply-adds (the larger of products and sums) and the bytes of an evaluation, counted from
-// the formulas, and the share of two bounds that it reaches: the multiply-add peak of this machine, and the
-// bandwidth of a triad over as many bytes (in the same cache), both measured in this run.
+// Measures the time per triangle of a force evaluation for each shell energy, on spheres. The program prints
+// CSV. Further columns are the multiply-adds (the larger of products and sums) and the bytes of an
+// evaluation, counted from the formulas, and the shares of two bounds that the evaluation reaches. The bounds
+// are the multiply-add peak of this machine and the bandwidth of the triad a = b + s c (STREAM) on arrays
+// with that many bytes in total, which fit into the same level of cache. Both are measured in this run.
 //
-//   shell_bench [FOLDER]     writes shell_bench.csv to FOLDER as well
+//   shell_bench [FOLDER]     also writes shell_bench.csv to FOLDER
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   char head[256];
   const double peak = bench::multiply_add_peak();
   std::snprintf(head, sizeof head,
-                "# one thread: %.2f 1e9 multiply-adds/s\n"
+                "# peak of one thread: %.2f 1e9 multiply-adds/s\n"
                 "energy,triangles,threads,ns_per_triangle,multiply_adds,bytes,triad_gb_per_s,part_of_peak,"
                 "part_of_bandwidth\n",
                 peak * 1e-9);

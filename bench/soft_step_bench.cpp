@@ -1,9 +1,9 @@
-// Time per triangle of a step of a spinning sphere with a linear membrane, beside its parts: the kernel of
-// the membrane, an evaluation of the accelerations, a step of RK4 (four evaluations) and of semi-implicit
-// Euler (one), at half the largest stable step. Minimum of four rounds. The last column is in kernels per
-// evaluation. CSV to standard output.
+// Measures times per triangle for a spinning sphere with a linear membrane: of the kernel of the membrane, of
+// an evaluation of the accelerations, and of steps of RK4 (four evaluations) and of semi-implicit Euler (one)
+// at half the largest stable step. Each time is the minimum of four rounds. The last column is the time per
+// evaluation divided by the time of the kernel. The program prints CSV.
 //
-//   soft_step_bench [FOLDER]     writes soft_step_bench.csv to FOLDER as well
+//   soft_step_bench [FOLDER]     also writes soft_step_bench.csv to FOLDER
 #include <algorithm>
 #include <cstdio>
 #include <exception>

@@ -31,7 +31,7 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
   return p.col(best);
 }
 
-/// Appends the contact of two bodies in deep overlap; returns whether they are.
+/// If two bodies are in deep overlap, appends their contact. Returns whether they are.
 bool ContactFinder::find_deep_overlap(int a, int b, const ContactRule& rule,
                                       std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];

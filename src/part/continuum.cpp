@@ -1,2 +1,2 @@
-// Compiles the bodies of continuum-inl.h once.
+// Compiles the functions of continuum-inl.h once.
 #include <pliant/part/continuum-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of inertia-inl.h once.
+// Compiles the functions of inertia-inl.h once.
 #include <pliant/part/inertia-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of linear_inertia-inl.h once.
+// Compiles the functions of linear_inertia-inl.h once.
 #include <pliant/part/linear_inertia-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of part-inl.h once.
+// Compiles the functions of part-inl.h once.
 #include <pliant/part/part-inl.h>

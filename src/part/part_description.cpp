@@ -1,2 +1,2 @@
-// Compiles the bodies of part_description-inl.h once.
+// Compiles the functions of part_description-inl.h once.
 #include <pliant/part/part_description-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of part_evaluation-inl.h once.
+// Compiles the functions of part_evaluation-inl.h once.
 #include <pliant/part/part_evaluation-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of store_jets-inl.h once.
+// Compiles the functions of store_jets-inl.h once.
 #include <pliant/part/store_jets-inl.h>

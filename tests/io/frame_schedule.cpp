@@ -35,7 +35,7 @@ TEST_CASE("N28: steps fill the run, and the last ends at its end") {
   CHECK(none.records(0));
 }
 
-TEST_CASE("I33, N24: impossible runs are refused with the reason") {
+TEST_CASE("I33, N24: a run that is impossible is refused, and the message gives the reason") {
   const double nan = std::nan("");
   for (const double bad : {0.0, -1.0, nan, HUGE_VAL}) {
     CHECK_THROWS_AS(FrameSchedule(1, bad, 25), std::invalid_argument);
@@ -47,7 +47,7 @@ TEST_CASE("I33, N24: impossible runs are refused with the reason") {
   CHECK_THROWS_AS(FrameSchedule(1, 0.1, 1e300), std::invalid_argument);
 }
 
-TEST_CASE("N30: a frame is a recorded step, or between two recorded steps") {
+TEST_CASE("N30: a frame shows a recorded step, or a time between two recorded steps") {
   for (const double step : {1e-3, 0.0007, 0.01, 0.4, 1.0 / 3})
     for (const double rate : {1.0, 24.0, 25.0, 60.0, 1000.0, 2999.0}) {
       const FrameSchedule schedule(1.3, step, rate);

@@ -60,7 +60,7 @@ ReadObj read_obj(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an OBJ file reads back exactly") {
+TEST_CASE("an OBJ file contains the exact coordinates") {
   const auto scene = pulled_scene();
   Simulation simulation(scene->body);
   for (int i = 0; i < 20; ++i) simulation.step(1e-3);
@@ -109,7 +109,7 @@ TEST_CASE("the transformed mesh of a rigid part equals a new evaluation of its s
   }
 }
 
-TEST_CASE("a PLY file has the size and the numbers of its header") {
+TEST_CASE("a PLY file has the size and the numbers of elements that its header states") {
   const auto scene = pulled_scene();
   const Simulation simulation(scene->body);
   FrameMeshes frame(*scene, simulation.model());
@@ -139,7 +139,7 @@ TEST_CASE("a PLY file has the size and the numbers of its header") {
                       meshes.back().mesh.triangles(2, meshes.back().mesh.triangles.cols() - 1));
 }
 
-TEST_CASE("frames become files with their number") {
+TEST_CASE("each frame is written to a file with the number of the frame") {
   const NewFolder folder;
   const auto scene = free_top();
   scene->appearance[0].resolution = 1;
@@ -271,7 +271,7 @@ TEST_CASE("only surface nodes of a soft solid are in its mesh, while the state h
   CHECK(static_cast<Eigen::Index>(obj.x.size()) == vertices);
 }
 
-TEST_CASE("PLY vertices have the values under their name") {
+TEST_CASE("the vertices of a PLY file have the surface values as a property with their name") {
   const NewFolder folder;
   const auto scene = soft_scene(SurfaceQuantity::strain);
   const Simulation simulation(scene->body);

@@ -1,4 +1,4 @@
-// The bodies of the functions of advance.h.
+// Implementation of advance.h.
 #pragma once
 
 #include <pliant/body/advance.h>

@@ -1,4 +1,4 @@
-// The bodies of MultiBody: adding parts, joints and loads.
+// Implementation of MultiBody: adding parts, joints and loads.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The bodies of PlacedPoint.
+// Implementation of PlacedPoint.
 #pragma once
 
 #include <utility>

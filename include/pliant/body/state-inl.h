@@ -1,4 +1,4 @@
-// The bodies of the functions of state.h.
+// Implementation of state.h.
 #pragma once
 
 #include <algorithm>

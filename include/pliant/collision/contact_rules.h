@@ -23,7 +23,7 @@ double smaller_size(const Model& model, const Contact& contact);
 class ContactRules {
  public:
   /// model: must outlive this object. Throws std::invalid_argument for numbers out of range, for unknown
-  /// names, and for names that stand for two things.
+  /// names, and for a name that two things have.
   explicit ContactRules(const Model& model);
 
   /// Returns the rule of two parts, in any order.

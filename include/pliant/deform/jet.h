@@ -2,7 +2,7 @@
 // scalar of a point: Pack (four points at once), Dual<1, Pack> for directional derivatives, or any other
 // scalar.
 //   s               reference shape, body frame, Eq. (3)
-//   s1 = J qs_dot   its rate, Eq. (7)   s2 = Jdot qs_dot   its quadratic velocity term
+//   s1 = J q_s_dot   its rate, Eq. (7)   s2 = Jdot q_s_dot   its quadratic velocity term
 //   J               columns ds/dq_s of the dynamic parameters, in the order of q_s, Eq. (9)
 #pragma once
 

@@ -1,4 +1,4 @@
-// Bodies of ContinuumEnergy: energy, force and stiffness of the strain of the whole map.
+// Implementation of ContinuumEnergy: energy, force and stiffness of an elastic material under the map s.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Continuum elasticity of the global parameters: the strain energy of the whole map from rest to now,
+// Continuum elasticity of the global parameters: the strain energy of the map s from the rest shape to the
+// current shape,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // Damping adds P_v = beta F S(Gdot) to P (local/solid/hooke.h). The user gives material constants instead of
@@ -52,10 +53,11 @@ struct StrainPoints {
   double settled = 0;
 };
 
-/// A rule is fine enough if doubling it changes energy, force and stiffness by no more than this, relative.
+/// A rule is fine enough if doubling its points changes energy, force and stiffness by at most this relative
+/// amount.
 inline constexpr double kStrainSettled = 1e-6;
 
-/// Linear elasticity of the whole map, with the small strain eps = sym(F - I).
+/// Linear elasticity with the small strain eps = sym(F - I).
 struct SmallStrain {
   LinearLaw law;
   explicit SmallStrain(const Elasticity& material) : law(material) {}

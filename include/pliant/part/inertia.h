@@ -1,7 +1,7 @@
 // The mass matrix and the inertial forces of a part without local deformation, Eq. (11), expressed in its
 // body frame:
 //   M = sum m G^T G,   g_q = -sum m G^T b,   G = [I, -[p]x, J],
-//   b = omega x (omega x p) + 2 omega x (J qs_dot) + Jdot qs_dot,
+//   b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot,
 // ordered (c, omega, q_s). The first block multiplies R^T c_ddot. inertia-inl.h computes the sums.
 #pragma once
 
@@ -23,8 +23,8 @@ struct Inertia {
 template <class S>
 struct PointJet {
   Vec3<S> p;                              ///< position, m
-  Vec3<S> p1;                             ///< J qs_dot, m/s
-  Vec3<S> p2;                             ///< Jdot qs_dot, m/s^2
+  Vec3<S> p1;                             ///< J q_s_dot, m/s
+  Vec3<S> p2;                             ///< Jdot q_s_dot, m/s^2
   Eigen::Matrix<S, 3, Eigen::Dynamic> J;  ///< dp/dq_s
 };
 

@@ -1,4 +1,4 @@
-// Bodies of Part: the steps that compute the constants of a part.
+// Implementation of Part: the steps that compute the constants of a part.
 #pragma once
 
 #include <vector>

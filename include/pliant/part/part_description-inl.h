@@ -1,4 +1,4 @@
-// Bodies of PartDescription: the setters of a part with their checks, and the checks of the whole
+// Implementation of PartDescription: the setters of a part with their checks, and the checks of the whole
 // description.
 #pragma once
 

@@ -51,8 +51,9 @@ class PartDescription {
   /// Sets one-sided limits of a dynamic parameter. prepare() checks them against the range that its rest
   /// value allows.
   Part& limits(const std::string& parameter, Range range);
-  /// Makes the part elastic: adds the strain energy of the whole map from rest to now to the energy of K_s. A
-  /// part that deforms locally gets its elasticity from the laws of its local deformation instead.
+  /// Makes the part elastic: adds the strain energy of the deformation from the rest shape to the current
+  /// shape s (part/continuum.h) to the energy of K_s. A part that deforms locally gets its elasticity from
+  /// the laws of its local deformation instead.
   Part& elasticity(ContinuumSettings settings);
   /// Makes parameters degrees of freedom.
   Part& make_dynamic(const std::vector<std::string>& parameters);

@@ -1,5 +1,5 @@
-// Bodies of PartEvaluation, geometry: reference shape, gradients, normals, and the inverse map from points to
-// material points.
+// Implementation of PartEvaluation, geometry: reference shape, gradients, normals, and the inverse map from
+// points to material points.
 #pragma once
 
 #include <algorithm>

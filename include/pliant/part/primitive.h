@@ -2,8 +2,8 @@
 //   s = T(e(u; a); b)
 // Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
 // taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; their
-// derivatives J = ds/dq_s and Jdot qs_dot, Eqs. (4) and (7), come from dual numbers. Primitive evaluates s, J
-// and the rates for batches of material points. Everything else is in Part, which does not depend on the
+// derivatives J = ds/dq_s and Jdot q_s_dot, Eqs. (4) and (7), come from dual numbers. Primitive evaluates s,
+// J and the rates for batches of material points. Everything else is in Part, which does not depend on the
 // types.
 //
 //   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
@@ -31,12 +31,13 @@ class Primitive final : public Part {
       : Part(std::move(name), density, std::make_unique<ShapeFaceOf<Shape>>(), chain.links()),
         chain_(std::move(chain)) {}
 
-  /// Evaluates s, J and rates of a batch of material points at given values of all parameters.
+  /// Evaluates s, J, J q_s_dot and Jdot q_s_dot of a batch of material points at given values of all
+  /// parameters.
   void jets(const ParameterValues<double>& values, const Material<Pack>* at,
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  /// Evaluates them with their derivatives along the direction of the dual parts.
+  /// Evaluates these quantities and their derivatives along the direction of the dual parts.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);
@@ -52,13 +53,13 @@ class Primitive final : public Part {
       chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
 
-  /// Applies T alone to seeded jets, with all parameters constant.
+  /// Applies only T, at constant parameters, to jets that contain e and the columns of J to propagate.
   void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const override {
     static constexpr bool none[kMaxParameters] = {};
     const LinkParameters<double> constant{values.b.data(), values.b_dot.data(), none};
     chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
-  /// Applies the inverse of T to a point.
+  /// Returns the point e with T(e) = p.
   Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
   }

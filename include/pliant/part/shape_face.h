@@ -1,4 +1,4 @@
-// ShapeFace: a shape behind virtual calls, for work that is done once at load or for output. The kernels of a
+// ShapeFace: the virtual interface of a shape, for computations at load time and for output. The kernels of a
 // step are templates (shape_jets.h). shape/shape.h documents the members of a shape; the optional ones have
 // defaults here.
 #pragma once
@@ -33,7 +33,7 @@ class ShapeFace {
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the gradient of the gauge, 1/m. It points along the outward normal.
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point at x.
+  /// Returns the material point (u, v, w) with e(u, v, w) = x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point of the surface for a direction (or pair of angles) g of the mesh pattern.
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
@@ -44,15 +44,15 @@ class ShapeFace {
   /// Returns e and its derivatives along the three material directions of the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
-  /// Whether a changing exponent strains the material by bounded amounts. The trigonometric map of
-  /// superquadrics does not: with eps/eps_0 = p its deformation gradient grows as |x|^(p - 1) at the
-  /// coordinate planes.
+  /// Returns whether the strain of the material stays bounded when an exponent changes. For the trigonometric
+  /// map of superquadrics it does not: with eps/eps_0 = p, the deformation gradient grows as |x|^(p - 1) at
+  /// the coordinate planes.
   virtual bool bounded_exponents() const = 0;
   /// Whether e is linear in all parameters that are lengths.
   virtual bool linear_lengths() const = 0;
 
-  // Quadrature. The rest map places the points: e of the shape itself, or of another shape that covers the
-  // same solid.
+  // Quadrature. The rest map places the quadrature points at rest. It is e of the shape itself, or e of
+  // another shape with the same solid.
 
   /// Returns tangents() of the rest map.
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
@@ -81,7 +81,7 @@ Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& 
 
 namespace detail {
 
-// Tests for the optional members of a shape.
+// Traits that detect the optional members of a shape.
 template <class Shape, class = void>
 struct RestMapOf {
   using Map = Shape;
@@ -109,7 +109,7 @@ PLIANT_HAS_MEMBER(linear_lengths)
 
 }  // namespace detail
 
-/// The face of a shape.
+/// Implements ShapeFace for the type Shape.
 template <class Shape>
 class ShapeFaceOf final : public ShapeFace {
   static constexpr int K = shape_size<Shape>;

@@ -1,4 +1,4 @@
-// Body of store_jets().
+// Implementation of store_jets().
 #pragma once
 
 #include <algorithm>

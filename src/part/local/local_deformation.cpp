@@ -1,2 +1,2 @@
-// Compiles the bodies of local_deformation-inl.h once.
+// Compiles the functions of local_deformation-inl.h once.
 #include <pliant/part/local/local_deformation-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of modal_deformation-inl.h once.
+// Compiles the functions of modal_deformation-inl.h once.
 #include <pliant/part/local/modal_deformation-inl.h>

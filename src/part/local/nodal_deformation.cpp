@@ -1,2 +1,2 @@
-// Compiles the bodies of nodal_deformation-inl.h once.
+// Compiles the functions of nodal_deformation-inl.h once.
 #include <pliant/part/local/nodal_deformation-inl.h>

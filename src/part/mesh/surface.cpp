@@ -1,2 +1,2 @@
-// Compiles the bodies of surface-inl.h once.
+// Compiles the functions of surface-inl.h once.
 #include <pliant/part/mesh/surface-inl.h>

@@ -1,2 +1,2 @@
-// Compiles the bodies of surface_turn-inl.h once.
+// Compiles the functions of surface_turn-inl.h once.
 #include <pliant/part/mesh/surface_turn-inl.h>

@@ -145,7 +145,7 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls PlacePart for the parts of an island in their order, each as late as its joints allow.
+/// Calls PlacePart for the parts of an island in their order, each just before the first joint that needs it.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const PlacePart& place) : island_(island), place_(place) {
@@ -253,7 +253,7 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     return;
   }
   blocks_.clear(island.pattern, work.rank);
-  // Joint by joint, while the joint and those that share parts with it are in the cache.
+  // This loop goes joint by joint, so that a joint and those that share parts with it are in the cache.
   auto coupling = island.couplings.begin();
   for (const int j : island.joints) {
     prepare(j);
@@ -373,7 +373,8 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!acts(joints.modes[j])) continue;
     const auto lambda = joints.lambda.segment(joint.row, joint.rows);
     const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
-    // For a joint that projection keeps closed, this is an error of the method and not a work.
+    // For closed joints that are projected, C_dot is an error of the method of integration; its power is not
+    // counted as work.
     if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
       power[static_cast<int>(Work::baumgarte)] += closing;
     if (!joint.driven) continue;

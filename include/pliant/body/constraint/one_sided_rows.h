@@ -1,5 +1,6 @@
-// One-sided rows of a group and the pushes that satisfy them: the least change of x in the mass metric by
-// pushes lambda >= 0, each zero unless its row is at its bound, while the joints of the group act.
+// One-sided rows of a group, and the pushes lambda that satisfy them while the joints of the group act. The
+// pushes are the solution of a linear complementarity problem: lambda >= 0, and lambda is zero for a row that
+// is not at its bound. They change x by the least amount in the mass metric.
 #pragma once
 
 #include <array>
@@ -53,7 +54,7 @@ class OneSidedRows {
     return n_ > before;
   }
 
-  /// Returns x with the pushes of the rows.
+  /// Computes the pushes that satisfy the rows added so far. Returns x with these pushes.
   Vector meet(const Vector& x) {
     const auto n = static_cast<Eigen::Index>(n_);
     MatMax<double, kMaxRows> W(n, n);
@@ -72,7 +73,8 @@ class OneSidedRows {
     for (std::size_t i = 0; i < n_; ++i) {
       const OneSidedRow& row = rows_[i];
       if (!pushed(i)) continue;
-      if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // exact
+      if (row.part >= 0)
+        after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // without rounding errors
     }
     return after;
   }

@@ -1,4 +1,4 @@
-// The bodies of RigidIsland: set-up, accelerations, and closing of joints.
+// Implementation of RigidIsland: set-up, accelerations, and closing of joints.
 #pragma once
 
 #include <algorithm>

@@ -18,10 +18,11 @@ namespace pliant {
 namespace detail {
 
 /// Closing joints whose rows nearly contradict each other, for instance rods that pull apart, would
-/// accelerate their parts without bound. The accelerations are limited to this multiple of those that the
-/// gaps ask for.
+/// accelerate their parts without bound. The accelerations are limited to this multiple of those that
+/// Baumgarte's terms require.
 inline constexpr double kMaxClosingRatio = 30;
-/// Softness of closing strings beyond that limit; they share the load.
+/// Softness (OneSidedRow::softness) of closing strings beyond that limit. It distributes the load over the
+/// strings.
 inline constexpr double kClosingSoftness = 1e-3;
 
 /// The joints of an island and the accelerations x of its parts. At first x are the accelerations without
@@ -68,7 +69,7 @@ class IslandForces {
         joints_.lambda[model_.joints()[at(island_.strings[at(row.k)])].row] =
             lambda[static_cast<Eigen::Index>(i)];
       else
-        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // exact
+        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // zero without rounding errors
     }
   }
 
@@ -154,8 +155,9 @@ class IslandForces {
   Vectors& kept_;
 };
 
-/// Softens the closing strings if one of them pushes more than kMaxClosingRatio times its violation at x,
-/// without pushes. Returns whether it does.
+/// Sets the softness of the rows of closing strings to kClosingSoftness if the largest change that a push
+/// causes in its own row exceeds kMaxClosingRatio times the largest violation. x: accelerations without
+/// pushes. Returns whether it was set.
 inline bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
                            const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
                            OneSidedRows<Eigen::Dynamic>& rows) {

@@ -1,4 +1,4 @@
-// Bodies of LocalDeformation, and the choice of its type by the settings.
+// Implementation of LocalDeformation, and the choice of its type by the settings.
 #pragma once
 
 #include <memory>

@@ -70,7 +70,7 @@ class LocalDeformation {
   virtual Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const = 0;
   /// Returns the displacements of the nodes of mesh(), m.
   virtual Nodes displacements(const double* q_d) const = 0;
-  /// Returns the displacements of some nodes of mesh(), one a column, m.
+  /// Returns the displacements of some nodes of mesh(), m: one column for each node.
   virtual Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const = 0;
   /// Returns this object if it is a NodalDeformation, else nullptr.
   virtual const NodalDeformation* nodal() const { return nullptr; }
@@ -79,7 +79,7 @@ class LocalDeformation {
   /// Returns the oscillators that the local coordinates are if their elasticity is diagonal, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
-  // The dynamics, one function a stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
+  // The dynamics, one function for each stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
   // workspace must come from workspace(), and place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
@@ -102,10 +102,10 @@ class LocalDeformation {
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 
-  /// Computes A = M^-1 for the joints of the part: the changes of (v_r, d_dot at the points) by impulses g on
-  /// (v_r, the points).
+  /// Computes the compliance A of the part for joints at the points: A g is the change of (v_r, d_dot at the
+  /// points) that impulses g on (v_r, the points) cause.
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
-  /// Adds the changes of all local rates by impulses g to d_dot.
+  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause.
   void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
                 Eigen::Ref<VecX<double>> d_dot) const;
   /// Returns M of rigid motion at the current positions: 6 x 6.
@@ -127,7 +127,7 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// compliance() and push_all() by M^-1.
+  /// The implementations of compliance() and push_all() if the workspace has no LocalResponse. They use M^-1.
   virtual MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                            LocalWorkspace& work) const = 0;
   virtual void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
@@ -145,7 +145,7 @@ class LocalDeformation {
 /// message names the part.
 std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings);
 
-/// Returns the values of nodal fields at points, three numbers a point.
+/// Returns the values of nodal fields at points, three numbers for each point.
 VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The laws of local deformation that scenes know, by name.
+// The elastic laws of local deformation, by the names that scenes use.
 #pragma once
 
 #include <limits>
@@ -18,18 +18,18 @@ struct LocalLawInfo {
     const char* unit;
     const char* meaning;
     double min;
-    bool above;  ///< whether min itself is excluded
+    bool above;  ///< true: values must be > min; false: >= min
     std::optional<double> fallback = {};
-    double max = std::numeric_limits<double>::infinity();  ///< allowed itself
+    double max = std::numeric_limits<double>::infinity();  ///< largest allowed value
   };
   const char* name;
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
   std::vector<Number> numbers;
-  /// Makes the energy of a mesh. values: of the numbers, in order. Throws std::invalid_argument for
-  /// impossible values.
+  /// Makes the energy of a mesh. values: the constants of the law, in the order of `numbers`. Throws
+  /// std::invalid_argument for impossible values.
   std::unique_ptr<NodalEnergy> (*make_energy)(const LocalMesh& mesh, const double* values);
-  bool quadratic = false;  ///< whether the energy is quadratic in d, as modes need it
+  bool quadratic = false;  ///< whether the energy is quadratic in d; modes need such a law
 };
 
 const std::vector<LocalLawInfo>& all_local_laws();
@@ -37,8 +37,8 @@ const std::vector<LocalLawInfo>& all_local_laws();
 /// Returns the law of this name. Throws std::logic_error if there is none.
 const LocalLawInfo& local_law_info(const std::string& name);
 
-/// Returns a law by name with the values of its numbers, in order. Throws std::invalid_argument for an
-/// unknown name; the message lists the laws.
+/// Returns a law by name with the values of its constants, in their order. Throws std::invalid_argument for
+/// an unknown name; the message lists the laws.
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values);
 
 }  // namespace pliant

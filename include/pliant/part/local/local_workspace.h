@@ -18,21 +18,21 @@ class LocalResponse {
   virtual MatX<double> compliance() const = 0;
   /// Adds the change of the local rates by impulses g on (v_r, the points) to d_dot.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
-  /// Replaces impulses on v_r and on all local coordinates by the changes of the rates.
+  /// Replaces impulses on v_r and on all local coordinates by the changes of the velocities that they cause.
   virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
 };
 
 struct LocalWorkspace {
   virtual ~LocalWorkspace() = default;
 
-  // Input: local coordinates and their rates, inside (q, v) of the evaluation.
+  // Input: the local coordinates and their rates. The maps refer to q and v of the evaluation.
   Eigen::Map<const VecX<double>> d{nullptr, 0}, d_dot{nullptr, 0};
 
   // Stage masses().
   MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
   Vec3<double> moment;  ///< sum m p, kg m
-  /// Bits of (c, theta, q_s) that move nothing at the current shape: they have no inertia and get no
-  /// acceleration.
+  /// The bits mark entries of (c, theta, q_s) that move no mass at the current shape. They have no inertia,
+  /// and their accelerations are zero.
   std::bitset<kMaxVelocities> held;
 
   // Stage forces().
@@ -40,7 +40,7 @@ struct LocalWorkspace {
   VecX<double> force;            ///< on the local coordinates
 
   // Stage accelerations().
-  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+  VecX<double> a_free;  ///< (a_r, d_ddot at the points of joints) without joints and limits
 
   // Joints.
   MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its pseudo-inverse

@@ -1,4 +1,4 @@
-// Bodies of ModalDeformation: construction, and the stages of the dynamics (modal_deformation.h).
+// Implementation of ModalDeformation: construction, and the stages of the dynamics (modal_deformation.h).
 #pragma once
 
 #include <cmath>

@@ -36,7 +36,7 @@ struct ModalWorkspace final : LocalWorkspace {
   VecX<double> f_r;  ///< of inertia, gravity and drag on (c, theta, q_s)
   VecX<double> f_d;  ///< of elasticity, damping and drag on the modes
   // Joints.
-  MatX<double> P, C_P;  ///< modes at the shared points; C P^T
+  MatX<double> P, C_P;  ///< P: modes at the points of joints; C_P = C P^T
 
   double condition() const override;
   /// Returns S^-1 b.

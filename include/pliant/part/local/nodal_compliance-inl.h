@@ -1,4 +1,4 @@
-// Bodies of NodalDeformation: the response to impulses of joints and limits, M^-1.
+// Implementation of NodalDeformation: the response to impulses of joints and limits, M^-1.
 #pragma once
 
 #include <vector>
@@ -35,7 +35,7 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const Eigen::Index n = n_nodes(), n_r = w.H0.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
-  // The solve of nodal_deformation.h for unit impulses: of_d - f_r and of_all of each, one a column.
+  // The solve of nodal_deformation.h for unit impulses: of_d - f and of_all, one column for each impulse.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();
   loads.rightCols(n_p) = G0.transpose();

@@ -1,4 +1,4 @@
-// Bodies of NodalDeformation: construction, names and sizes of its coordinates.
+// Implementation of NodalDeformation: construction, names and sizes of its coordinates.
 #pragma once
 
 #include <algorithm>

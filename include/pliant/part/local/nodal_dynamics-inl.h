@@ -1,5 +1,5 @@
-// Bodies of NodalDeformation: the stages of the dynamics with reference conditions (nodal_deformation.h, and
-// include/pliant/part/local/README.md).
+// Implementation of NodalDeformation: the stages of the dynamics with reference conditions
+// (nodal_deformation.h, and include/pliant/part/local/README.md).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Bodies of Surface: the mesh of the surface and its normals.
+// Implementation of Surface: the mesh of the surface and its normals.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Bodies of surface_turn.h.
+// Implementation of surface_turn.h.
 #pragma once
 
 #include <algorithm>
