@@ -10,7 +10,7 @@
 
 namespace pliant_cli {
 
-/// Opens a context and closes it again. Returns its description for run.json, as "OSMesa: llvmpipe,
+/// Opens a context and closes it again. Returns its description for run.json, for example "OSMesa: llvmpipe,
 /// OpenGL 4.5". Throws ResourceFailure if none opens.
 std::string require_graphics(pliant::GlBackend backend);
 

@@ -6,8 +6,8 @@
 
 namespace pliant_cli {
 
-/// Returns the instruction sets of the processor that the library can use, as "avx avx2 fma"; empty if
-/// unknown.
+/// Returns the instruction sets of the processor that the library can use, for example "avx avx2 fma"; empty
+/// if unknown.
 std::string processor_features();
 /// Returns the BLAS libraries that are loaded into this process, or "none".
 std::string loaded_blas();

@@ -1,4 +1,5 @@
-// Signals that stop the program. After the first one it ends in good order; a second one ends it at once.
+// Signals that stop the program. After the first one it completes its files and ends; a second one ends it at
+// once.
 #pragma once
 
 namespace pliant_cli {

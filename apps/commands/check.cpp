@@ -37,7 +37,7 @@ double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedul
   return simulation.time() > 0 ? seconds / simulation.time() * schedule.end() : 0;
 }
 
-// Returns a text as ", 2 obstacles of 644 triangles"; empty if there are none.
+// Returns the number of obstacles in words, ", 2 obstacles of 644 triangles"; empty if there are none.
 std::string obstacle_text(const pliant::MultiBody& body) {
   const auto& obstacles = body.contact.obstacles;
   std::int64_t triangles = 0;

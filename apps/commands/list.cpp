@@ -75,13 +75,13 @@ void list_joints() {
 
 void list_integrators() {
   std::cout << pliant::kAutomatic
-            << "\n  the method below that advances farthest in a trial for its cost; used with a tolerance\n";
+            << "\n  the method below that advances farthest at equal cost in a trial; needs a tolerance\n";
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
 }
 
 void list_functions() {
-  std::cout << "Formulas of time, as \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
+  std::cout << "Formulas of time, for example \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
   for (const pliant::Formula::Function& function : pliant::Formula::functions())
     std::cout << "  " << std::left << std::setw(8) << function.name << " " << function.meaning << "\n";
 }

@@ -1,7 +1,7 @@
 // The steps of a run, the states that it records, and the times of its frames. Frame k is at time k / rate. A
 // frame at the end of a step uses that state. For a frame between two steps both states are recorded, so that
 // the frame is interpolated within a single step. The first and the last state are always recorded. With
-// variable steps, a state is recorded if a frame lies in the step before it or may lie in the step after it.
+// variable steps, a state is recorded if a frame is in the step before it or may be in the step after it.
 #pragma once
 
 #include <cstdint>

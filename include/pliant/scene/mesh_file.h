@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have the
-/// same position.
+/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have the same
+/// position.
 struct MeshFile {
   Eigen::Matrix3Xd vertices;   ///< in the units of the file, rounded to single precision
   Eigen::Matrix3Xi triangles;  ///< three column numbers of `vertices` per triangle

@@ -1,6 +1,6 @@
-// From text to values, with the event parser of nlohmann-json. Its events contain no places. It reports
-// checked tokens in the order of the text, so a cursor that moves from token to token finds the place of
-// each.
+// Parses text to values with the event parser of nlohmann-json. Its events do not contain positions in the
+// text. It reports valid tokens in the order of the text, so a cursor that moves from token to token finds
+// the position of each.
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Rows from top to bottom, pixels from left to right, three bytes (red, green, blue; sRGB) a pixel, no
-/// padding.
+/// Rows from top to bottom, pixels from left to right, three bytes (red, green, blue; sRGB) per pixel,
+/// no padding.
 struct Image {
   int width = 0;
   int height = 0;
