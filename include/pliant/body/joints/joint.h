@@ -1,5 +1,5 @@
-// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it ties. The formula of a joint is
-// one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
+// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it connects. The formula of a joint
+// is one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
 //   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
 // bias is C_ddot for constant generalised velocities. It is the second derivative of C along a motion of the
 // points with velocity x_dot and acceleration L_dot v; prescribed points follow their paths. It contains C_tt
@@ -112,8 +112,8 @@ template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
-/// rows; `first` and `second`, the numbers of points of its sides (second = 0: the world itself); and
-/// `one_sided`. Its formula is
+/// rows; `first` and `second`, the numbers of points of its sides (second = 0: the second side is the world);
+/// and `one_sided`. Its formula is
 /// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;
@@ -229,8 +229,8 @@ class JointOf final : public Joint {
       return C_x;
     }
   }
-  /// Returns dC/dx by the chain rule: dC by points and rotations of the axes, and these by the points of the
-  /// frames.
+  /// Returns dC/dx by the chain rule: the derivatives of C by points and rotations of the axes, times the
+  /// derivatives of these by the points of the frames.
   template <class S>
   Eigen::Matrix<S, kRows, 3 * kPoints> framed_slope(const Points<S>& x) const {
     using D = Dual<12, S>;

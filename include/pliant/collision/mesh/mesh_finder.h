@@ -23,7 +23,7 @@ class MeshFinder {
   bool empty() const { return meshes_.empty(); }
   /// Appends the contacts of surfaces that overlap at a state and a time t (s).
   void find(const State& state, double t, std::vector<Contact>& found) const;
-  /// Adds to a neighbourhood of a step of h seconds what the parts of this class may touch. after: the end of
+  /// Updates the neighbourhood of a step of h seconds for parts that deform locally. after: the end of
   /// a step that is done; nullptr for a coming step. reach: see ContactFinder::neighbourhood().
   void approach(const State& state, const State* after, double t, double h, double reach,
                 ContactFinder::Neighbourhood& near) const;
@@ -63,7 +63,7 @@ class MeshFinder {
   /// Seven parameters, because the caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
-  /// Returns the contact that separates two such parts as wholes.
+  /// Returns the contact that separates two such parts by their rigid motion.
   Contact separation_contact(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                              const PlacedMesh& a, const PlacedMesh& b) const;
 

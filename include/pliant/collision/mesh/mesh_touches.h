@@ -36,7 +36,7 @@ struct MeshTouch {
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
 /// Appends the overlaps of a mesh with an obstacle; the points of side b are not set for vertices of a.
 /// Vertices that are deeper behind the obstacle than `deepest` (m) are ignored: they came from another side.
-/// Ignored too are vertices whose outward direction agrees with the normal of the triangle.
+/// Vertices whose outward direction agrees with the normal of the triangle are also ignored.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant
