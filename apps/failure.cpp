@@ -1,4 +1,5 @@
-// The exit code and the message of each exception, and messages for words that were not understood.
+// The exit code and the message of each exception, and messages about unknown commands, options and
+// arguments.
 #include "failure.h"
 
 #include <algorithm>

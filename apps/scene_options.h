@@ -16,7 +16,7 @@ struct SceneOptions {
   std::vector<std::string> overrides;
 };
 
-/// Declares SCENE and --set.
+/// Declares the argument SCENE and the option --set.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 /// Reads the scene and prints its warnings on standard error. Throws pliant::SceneError and
 /// pliant::FileError.

@@ -1,20 +1,22 @@
 // The cost of contact: time per body and step of ellipsoids that fall onto a plane, from the first impacts
-// until they are at rest, and of standing towers and pyramids of ten boxes. Also the exponent with which the
-// cost grows with the number of bodies, and the share of each stage.
+// until they are at rest, and of standing towers and pyramids of ten boxes. The program also measures the
+// exponent with which the cost grows with the number of bodies, and the time of each stage.
 //
 //   contact_bench [FOLDER] [MAX]
 //
 // Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
 // largest number of bodies (10000).
 //
-// The table contains the mean time of a step in the whole run (step) and in its last tenth (at rest; columns
-// still_... in the files). It also contains the times of single steps at the end: warm (column begun_us),
-// whose impulses are warm-started from the contact cache, as in ten steps of eleven; cold (column anew_us),
-// without the cache; asleep, when all bodies sleep, which a scene can enable.
+// Columns of the table, with the names of the columns of the files if they differ:
+//   step               mean time of a step in the whole run (step_us_per_body)
+//   at rest            mean time of a step in the last tenth of the run (still_step_us_per_body)
+//   warm               a step at the end that is warm-started from the contact cache (begun_us)
+//   cold               a step at the end without the cache (anew_us); one step of eleven in a run is cold
+//   asleep             a step at the end in which all bodies sleep, an option of scenes
+//   motion             stage of a step at the end: the method of integration without contact
+//   near, find, solve  stages of a step at the end: candidate pairs, contacts, impulses
 //
-// Stages of a step at the end: motion (the step of the integration method alone), near (candidate pairs),
-// find (contacts), solve (impulses). They are timed one by one in separate loops, so that their caches are
-// warm.
+// The stages are timed one by one in separate loops, so that the processor caches contain their data.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -40,7 +42,7 @@ enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: three parameter
 struct System {
   const char* name;
   Bodies bodies;
-  int layers;      ///< layers on top of each other; 1: side by side
+  int layers;      ///< number of layers on top of each other
   int max_bodies;  ///< largest number of bodies
 };
 
@@ -49,8 +51,8 @@ struct Cost {
   std::string system;
   int bodies, contacts;
   double warm, cold;
-  double step, resting_step;  ///< over the whole run with its impacts; of the end of the run
-  double asleep;              ///< of a step in which all bodies sleep
+  double step, resting_step;  ///< means over the whole run, and over its last tenth
+  double asleep;              ///< a step in which all bodies sleep
   double motion, near, find, solve;
   double deepest;  ///< largest penetration in the run, in sizes of a body
   double residual;
@@ -73,7 +75,7 @@ void build_towers(MultiBody& body, const System& system, int n) {
   }
 }
 
-/// Pyramids with rows of 4, 3, 2 and 1 boxes.
+/// Adds pyramids with rows of 4, 3, 2 and 1 boxes.
 void build_pyramids(MultiBody& body, int n) {
   constexpr double half = 0.05;
   for (int first = 0; first < n; first += 10)
@@ -225,8 +227,8 @@ int main(int argc, char** argv) try {
     if (costs.size() < 2) continue;
     const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),
                  resting = bench::exponent(costs, &Cost::bodies, &Cost::resting_step);
-    std::printf("%-15s grows as bodies to the power %.3f (step) %.3f (at rest)\n", system.name, moving,
-                resting);
+    std::printf("%-15s total time grows as the number of bodies to the power %.3f (step), %.3f (at rest)\n",
+                system.name, moving, resting);
     exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, resting);
   }
   return 0;

@@ -1,4 +1,4 @@
-// The exponent with which the cost grows with the size of a problem.
+// The exponent of the growth of the cost with the size of a problem.
 #pragma once
 
 #include <cmath>

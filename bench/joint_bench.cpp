@@ -185,8 +185,10 @@ int main(int argc, char** argv) try {
                  stage = bench::exponent(costs, &Cost::links, &Cost::stage),
                  rk4 = bench::exponent(costs, &Cost::links, &Cost::rk4_step),
                  euler = bench::exponent(costs, &Cost::links, &Cost::euler_step);
-    std::printf("%-20s grows as links to the power %.3f (evaluation) %.3f (stage) %.3f (rk4) %.3f (euler)\n",
-                system.name, evaluation, stage, rk4, euler);
+    std::printf(
+        "%-20s total time grows as the number of links to the power %.3f (evaluation), %.3f (stage), %.3f "
+        "(rk4), %.3f (euler)\n",
+        system.name, evaluation, stage, rk4, euler);
     exponents_file.row("\"%s\",%.4f,%.4f,%.4f,%.4f\n", system.name, evaluation, stage, rk4, euler);
   }
   return 0;

@@ -1,12 +1,12 @@
 // Run time against error of free vibrations: a solid sphere (r = 0.1 m, E = 1e5 Pa, nu_P = 0.3, 1000 kg/m^3)
 // with the lowest modes T2 at 24.68711 Hz and S2 at 26.11917 Hz (Lamb 1882), and a closed membrane of the
 // same radius and material, 1 mm thick, with the lowest modes n = 2 at 11.695 Hz (Lamb 1882; on a mesh the
-// next ones lie among short waves). The table has the processor time of a period of the lowest mode and the
-// relative error of the frequencies, by basis. Nodes take steps of 0.9 of the largest stable one; modes take
-// three steps per period, which they solve exactly. The error of nodes is that of the modes of their mesh and
-// of the method. Meshes of order 2 have more nodes per element than modes use, and smaller errors. CSV to
-// standard output, then the time of each basis at given errors of the lower mode and of both modes; "not
-// reached" if no row has at most this error.
+// next ones are between modes of short waves). The table has the processor time of a period of the lowest
+// mode and the relative error of the frequencies, by basis. Nodes take steps of 0.9 of the largest stable
+// one; modes take three steps per period, which they solve exactly. The error of nodes is that of the modes
+// of their mesh and of the method. Meshes of order 2 have more nodes per element than modes use, and smaller
+// errors. CSV to standard output, then the time of each basis at given errors of the lower mode and of both
+// modes; "not reached" if no row has at most this error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>

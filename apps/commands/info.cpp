@@ -68,9 +68,10 @@ void print_part(const pliant::PartModel& model) {
         about_origin - inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() -
                                        centre * centre.transpose());
     const double scale = about_centre.diagonal().maxCoeff();
-    std::cout << "  inertia about it (kg m^2): xx " << about_centre(0, 0) << ", yy " << about_centre(1, 1)
-              << ", zz " << about_centre(2, 2) << ", xy " << rounded(about_centre(0, 1), scale) << ", xz "
-              << rounded(about_centre(0, 2), scale) << ", yz " << rounded(about_centre(1, 2), scale) << "\n";
+    std::cout << "  inertia about the centre of mass (kg m^2): xx " << about_centre(0, 0) << ", yy "
+              << about_centre(1, 1) << ", zz " << about_centre(2, 2) << ", xy "
+              << rounded(about_centre(0, 1), scale) << ", xz " << rounded(about_centre(0, 2), scale)
+              << ", yz " << rounded(about_centre(1, 2), scale) << "\n";
   }
   if (part.continuum() != nullptr) {
     const pliant::ContinuumSettings& law = part.continuum()->settings();

@@ -75,7 +75,8 @@ void list_joints() {
 
 void list_integrators() {
   std::cout << pliant::kAutomatic
-            << "\n  the method below that advances farthest at equal cost in a trial; needs a tolerance\n";
+            << "\n  the method of this list that advances farthest at equal cost in a trial; used with a "
+               "tolerance\n";
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
 }

@@ -10,7 +10,7 @@ struct Wave {
   static constexpr const char* name = "wave";
   static constexpr const char* formula = "(x + size h sin(pi waves zeta), y, z)";
   static constexpr std::array<ParameterSpec, 2> parameters{
-      {ratio("size", 0, {-2, 2}, {-2, 2}, "height of the wave over h", Follows::section),
+      {ratio("size", 0, {-2, 2}, {-2, 2}, "amplitude of the wave divided by h", Follows::section),
        ratio("waves", 2, {0.1, 20}, {0.1, 20}, "half waves between zeta = 0 and 1", Follows::section)}};
   static constexpr Sections sections = Sections::stay_plane;
 

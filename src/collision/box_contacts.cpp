@@ -14,7 +14,7 @@ namespace {
 /// A face normal is preferred to a later axis whose gap is larger by at most this, in sizes of the smaller
 /// box.
 constexpr double kFaceFirst = 1e-6;
-/// Edges whose directions have a smaller sine between them are parallel and have no crossing.
+/// Two edges are parallel, and have no crossing, if the sine of the angle between them is below this.
 constexpr double kParallelEdges = 1e-6;
 /// Corners nearer than this, in sizes of the smaller box, are merged.
 constexpr double kSameCorner = 1e-6;
@@ -74,8 +74,8 @@ Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) 
   return p + std::clamp(s, -half, half) * e;
 }
 
-/// A face of a box that is clipped by four planes. Exactly it has at most eight corners. With rounding each
-/// plane adds at most half as many corners again, so 20 places suffice.
+/// A face of a box that is clipped by four planes. In exact arithmetic it has at most eight corners. With
+/// rounding, each plane adds at most half as many corners again, so 20 places suffice.
 struct Polygon {
   std::array<Vec3<double>, 20> corners;
   std::size_t n = 0;

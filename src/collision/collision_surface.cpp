@@ -15,22 +15,22 @@ namespace {
 
 /// Edges of the sample mesh along an eighth of a great circle.
 constexpr int kSurfaceResolution = 6;
-/// Edges of a coarse mesh from which the reach of a part with dynamic parameters is estimated, and the factor
-/// on its largest distance from the origin.
+/// Edges of the coarse mesh from which the reach of a part with dynamic parameters is estimated. The reach is
+/// the largest distance of its points from the origin, times the factor.
 constexpr int kCoarseEdges = 2;
 constexpr double kCoarseMargin = 1.1;
 /// Largest distance of the surface from the chords between its sample points, in sizes of the part.
 constexpr double kSurfaceSag = 0.02;
-/// Largest height of the lowest sample point over the lowest surface point, in sizes, where a thin part
-/// crosses a thin part.
+/// Largest distance between the lowest sample point and the lowest surface point, in sizes, for two thin
+/// parts that cross.
 constexpr double kThinSag = 0.1;
 /// Sample points whose heights differ by at most this, in sizes of the part, are equally low.
 constexpr double kSameHeight = 1e-6;
 /// Points nearer than kSamePlace, in sizes, are merged. Two points are on one flat face if the middle of
 /// their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
-/// Size of the stencil, in spacings, of the test whether a sample point is already lowest; and the difference
-/// of heights, in sizes, that is rounding: it starts no search on a flat face.
+/// The test whether a sample point is already the lowest point: size of its stencil, in spacings; and the
+/// largest difference of heights, in sizes, that is rounding and therefore starts no search on a flat face.
 constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
 /// A stencil whose second difference is smaller than this, in sizes, is flat.
 constexpr double kFlatStencil = 1e-13;

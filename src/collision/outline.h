@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-/// Removes those contacts from number `first` on that are between others with an equal normal and are not the
-/// deepest. Non-penetration at the others implies it at these. All contacts from `first` on must belong to
-/// one pair. size: of the smaller part, m.
+/// Removes contacts from number `first` on that are inside the outline of contacts with an equal normal and
+/// are not the deepest. Non-penetration at the remaining contacts implies non-penetration at the removed
+/// ones. All contacts from `first` on must belong to one pair. size: of the smaller part, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);
 
 }  // namespace pliant

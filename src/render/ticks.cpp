@@ -1,4 +1,4 @@
-// Round steps and labels for a scale.
+// Round numbers along a scale, and their labels.
 #include <pliant/render/ticks.h>
 
 #include <algorithm>
@@ -12,7 +12,9 @@ namespace {
 
 constexpr int kMaxDecimals = 4, kMaxDigits = 6, kMaxTicks = 12;
 
-// Returns a value with the digits that the step needs; with a power of ten if these are many.
+// Returns the label of a value, with as many digits as the step needs. The notation is scientific if the
+// labels of the scale need more than kMaxDecimals decimals, or more than kMaxDigits digits before the decimal
+// point.
 std::string label(double value, double step, double largest) {
   const int last = static_cast<int>(std::floor(std::log10(step) + 1e-9));
   const int first = static_cast<int>(std::floor(std::log10(largest) + 1e-9));

@@ -2,7 +2,8 @@
 """Measures the structure of the engine: python3 tests/package/house.py [--check] [FOLDER OF THE PROJECT].
 
 Prints the lines and concepts of each folder, and the functions with more than 60 lines or 6 parameters. A concept is a
-file name without its suffix: dynamics.h, dynamics-inl.h and dynamics.cpp are one concept. --check fails when a folder has more than 20 concepts.
+file name without its suffix: dynamics.h, dynamics-inl.h and dynamics.cpp are one concept. The option --check makes the script fail if a
+folder has more than 20 concepts.
 """
 import re
 import sys
@@ -21,7 +22,7 @@ def without_comments(text):
 
 
 def parameters(head):
-    """Returns the number of parameters of a function with this head."""
+    """Returns the number of parameters of a function. head: its declaration, as text."""
     inside = re.sub(r"<[^<>()]*>", "", head)
     while re.search(r"<[^<>()]*>", inside):
         inside = re.sub(r"<[^<>()]*>", "", inside)
@@ -37,7 +38,7 @@ def parameters(head):
 
 
 def functions(path):
-    """Returns (name, line, lines, parameters) of each function defined in a file. A lambda belongs to its function."""
+    """Returns (name, line, lines, parameters) of each function defined in a file. A lambda is not a function of its own."""
     text = without_comments(path.read_text(encoding="utf8"))
     found, open_at, head_start, inner = [], [], 0, 0
     for i, c in enumerate(text):
@@ -83,7 +84,7 @@ def main():
             if len(concepts) > MAX_CONCEPTS:
                 crowded.append(f"{folder} has {len(concepts)} concepts; expected at most {MAX_CONCEPTS}")
             for base, count in lines.items():
-                key = ("engine" if room in ENGINE else "programs", base)
+                key = ("engine" if room in ENGINE else "scene, io and render", base)
                 totals[key] = totals.get(key, 0) + count
             for path in files["include/pliant"] + files["src"]:
                 for name, line, length, count in functions(path):

@@ -86,7 +86,7 @@ TEST_CASE("volume and second moments agree with the Beta functions", "[mass]") {
   }
 }
 
-TEST_CASE("scales: M_ss of the semi-axes agrees with closed forms", "[mass]") {
+TEST_CASE("M_ss of the semi-axes agrees with closed forms", "[mass]") {
   for (double eps : {0.1, 1.0, 1.9}) {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {}, 1);
     part->rest({{"a1", 1.3}, {"a2", 0.7}, {"a3", 0.9}, {"eps1", eps}, {"eps2", eps}});
@@ -106,8 +106,7 @@ TEST_CASE("scales: M_ss of the semi-axes agrees with closed forms", "[mass]") {
 }
 
 TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[mass][long]") {
-  // Mean of ln|cos u| weighted by x^2: (psi(2 eps1) - psi(5 eps1 / 2)) / 2; for v: (psi(3/2 eps2) - psi(2
-  // eps2)) / 2.
+  // The mean of ln|cos u|, weighted by x^2, is (psi(2 eps1) - psi(5 eps1 / 2)) / 2.
   for (double eps : {0.4, 1.0, 1.6}) {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {}, 1);
     part->rest({{"eps1", eps}, {"eps2", 0.8}});
@@ -120,9 +119,10 @@ TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[m
     const double now = part->rest_inertia().M(6, 7);
     INFO("eps1 " << eps << " points " << part->mass_points().n_points);
     CHECK(std::abs(now / (xx * mean) - 1) <= 1e-12L);
-    // M_eps1,eps1 is the sum over the coordinates of the mean squared logarithm: second derivatives of the
-    // Beta function.
-    auto log_square = [&](long double p, long double q) {  // of ln|cos u|, density cos^(2p-1) sin^(2q-1)
+    // With mu = 1, M(eps1, eps1) = int ((x^2 + y^2) ln^2|cos u| + z^2 ln^2|sin u|) dV. The means of the
+    // squared logarithms are second derivatives of the Beta function.
+    // Returns the mean of ln^2|cos u| for the weight cos^(2p-1) sin^(2q-1).
+    auto log_square = [&](long double p, long double q) {
       const long double first = (test::digamma(p) - test::digamma(p + q)) / 2;
       const long double h = 1e-3L;
       auto slope = [&](long double t) { return test::digamma(p + t) - test::digamma(p + q + t); };
@@ -160,7 +160,7 @@ TEST_CASE("volumes of the other shapes", "[mass]") {
           "supertoroid", {{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}, {"a4", 3}, {"eps1", e1}, {"eps2", e2}});
       CHECK(solid(*part).mass == Approx(volume).epsilon(1e-13));
     }
-  // A round torus: 2 pi^2 R r^2, and its moments about its axis and a diameter.
+  // A round torus: its volume 2 pi^2 R r^2, and its moments of inertia about its axis and about a diameter.
   const std::unique_ptr<Part> torus =
       rigid("supertoroid", {{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}, {"a4", 4}});
   const double m = 2 * kPi * kPi * 2 * 0.25;
@@ -180,7 +180,7 @@ TEST_CASE("areas of shells", "[mass]") {
         Approx(2 * kPi * 0.3 * 2 + 4 * kPi * 0.09).epsilon(1e-13));
   CHECK(solid(*rigid("supertoroid", {{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}, {"a4", 4}}, {}, true)).mass ==
         Approx(4 * kPi * kPi * 2 * 0.5).epsilon(1e-13));
-  // A cone with its tip: lateral area pi r s, and the base.
+  // A cone with a tip: the lateral area pi r s (s: slant height) and the base.
   CHECK(solid(*rigid("cone", {}, {}, true)).mass ==
         Approx(kPi * 2 * std::sqrt(8.0) + kPi * 4).epsilon(1e-13));
   // An octahedron of unit axes: eight triangles of side sqrt 2.
@@ -220,7 +220,7 @@ TEST_CASE("volumes and centres of deformed solids", "[mass]") {
   const Measured offset = solid(*rigid("ellipsoid", {{"bend_offset.b1", 0.4}}, {"bend_offset"}));
   CHECK(offset.centre[0] == Approx(3 * 0.4 / (kPi * kPi)).epsilon(1e-12));
   CHECK(offset.mass == Approx(4 * kPi / 3).epsilon(1e-13));
-  // A bend conserves the volume of a symmetric section (Pappus), and its direction only rotates it.
+  // A bend conserves the volume if the section is symmetric (Pappus). The centre of mass moves along +x.
   const Part::Named slim{{"a1", 0.3}, {"a2", 0.2}, {"bend.angle", 1.5}};
   const Measured bent = solid(*rigid("cylinder", slim, {"bend"}));
   CHECK(bent.mass == Approx(2 * kPi * 0.06).epsilon(1e-13));
@@ -244,7 +244,7 @@ TEST_CASE("given mass and inertia are used", "[mass]") {
   CHECK(part->rest_inertia().M.bottomRightCorner<3, 3>() == I);
   CHECK(part->rest_inertia().moment == 4 * centre);
   CHECK((part->rest_inertia().M - part->rest_inertia().M.transpose()).norm() == 0);
-  // Kinetic energy of spin about the centre: omega I omega.
+  // Twice the kinetic energy of a rotation about the centre of mass: omega^T I omega.
   VecMax<double> v = VecMax<double>::Zero(6);
   v.segment<3>(3) = Vec3<double>(0, 0, 2);
   v.head<3>() = -v.segment<3>(3).cross(centre);
@@ -255,10 +255,13 @@ TEST_CASE("given mass and inertia are used", "[mass]") {
   CHECK_THROWS_WITH(part->prepare(), test::has_text("only a rigid part"));
 }
 
-TEST_CASE("M is symmetric and positive definite, and inertial forces balance the power of the change of M",
+TEST_CASE("M is symmetric and positive definite, and the inertial forces conserve the kinetic energy",
           "[mass][long]") {
-  // nu^T g_q + 1/2 nu^T Mdot nu = 0 for M of the mixed frame (c_dot in the world, omega in the body). Here M
-  // is in the body frame, in which a constant c_dot rotates: v_r' = (-omega x v_c, 0, 0) adds nu^T M v_r'.
+  // For velocities v = (c_dot in the world, omega in the body, q_s_dot) the balance is
+  //   v^T g_q + 1/2 v^T Mdot v = 0.
+  // Here M belongs to v_r = (R^T c_dot, omega, q_s_dot). If c_dot is constant in the world, its components in
+  // the body rotate: v_r_dot = (-omega x R^T c_dot, 0, 0). The sum above therefore has the additional term
+  // v_r^T M v_r_dot.
   Draws draws(2);
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : test::test_chains())
@@ -268,7 +271,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces balance the
         if (shell) part->make_shell();
         test::make_all_dynamic(*part, {"eps1", "eps2", "t", "a4"});
         if (shell && chain.size() > 2) continue;
-        // A twist after a bend needs points in the whole solid: fewer if its range is small.
+        // A twist after a bend needs quadrature points in the whole solid. Narrow limits reduce their number.
         if (chain.size() == 3 && chain[0] == "shear")
           for (const char* name : {"shear.sx", "shear.sy", "bend.angle", "twist.angle"})
             part->limits(name, {-0.5, 0.5});
@@ -293,8 +296,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces balance the
           MatX<double> M_dot(n, n);
           for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) M_dot(i, j) = moving.M(i, j).d[0];
-          const Vec3<double> c_dot =
-              draws.vector(2);  // in the body frame; the velocity is constant in the world
+          const Vec3<double> c_dot = draws.vector(2);  // R^T c_dot; c_dot is constant in the world
           VecX<double> v(n), frame_rate = VecX<double>::Zero(n);
           v << c_dot, state.omega, state.q_s_dot;
           frame_rate.head<3>() = -state.omega.cross(c_dot);
@@ -309,8 +311,9 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces balance the
 
 namespace {
 
-/// Returns a state within the declared ranges of the dynamic parameters; bend_offset is at most the size of
-/// the part.
+/// Returns a state within the declared ranges of the dynamic parameters. Lengths are between half and twice
+/// their rest values; other parameters are at most 5 in absolute value. corner: 0 for the largest values, 1
+/// for the smallest ones, else random values.
 test::RandomState random_in_range(Draws& draws, const Part& part, int corner) {
   const Parameters& all = part.parameters();
   const int n = all.n_dynamic();
@@ -326,8 +329,8 @@ test::RandomState random_in_range(Draws& draws, const Part& part, int corner) {
   return state;
 }
 
-/// Returns the change of M and g_q, relative to their scale, if the quadrature rule of a prepared part is
-/// doubled.
+/// Returns the largest change of M and g_q, relative to their scale, if the number of quadrature nodes along
+/// each direction is doubled. part: prepared. trials: number of states.
 double doubling_error(const Part& part, int trials) {
   Draws draws(3);
   const MassPoints finer = place_mass_points(part, 1);
@@ -389,7 +392,8 @@ TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only:
 }
 
 TEST_CASE(
-    "N16: doubling the quadrature rule changes M and g_q to rounding only: dynamic exponents, repeated links",
+    "N16: doubling the quadrature rule changes M and g_q to rounding only: dynamic exponents, repeated "
+    "deformations",
     "[mass][long]") {
   struct Case {
     const char* shape;
@@ -409,7 +413,8 @@ TEST_CASE(
       const std::unique_ptr<Part> part = make_part("part", c.shape, c.chain, 1000);
       if (shell) part->make_shell();
       part->make_dynamic(c.dynamic);
-      if (part->parameters().find("bend.angle") >= 0)  // limited so that the part is not inverted
+      // Within these limits the bend does not turn the part inside out.
+      if (part->parameters().find("bend.angle") >= 0)
         part->rest({{"a1", 0.2}, {"a2", 0.2}}).limits("bend.angle", {-2, 2});
       part->prepare();
       INFO(test::describe(c.shape, c.chain)

@@ -1,5 +1,6 @@
-// An independent evaluation of a part, in long double and by finite differences. The formulas of its shape
-// and its links are found by name; derivatives, batches and sums of the engine are not used.
+// An independent evaluation of a part, in long double and by finite differences. It uses the formulas of the
+// shape and of the global deformations, which it finds by name. It uses no derivatives, batches or sums of
+// the engine.
 #pragma once
 
 #include <cmath>
@@ -52,7 +53,7 @@ void link_of(std::tuple<Links...>*, const std::string& name, const Long*& b, Vec
 }
 }  // namespace detail
 
-/// Returns s at a material point; `parameters` are all parameters in order.
+/// Returns s at a material point. parameters: all parameters of the part, in order.
 inline Vec3<Long> reference_point(const Part& part, const Material<Long>& m,
                                   const std::vector<Long>& parameters) {
   const Long* b = parameters.data();
@@ -64,7 +65,8 @@ inline Vec3<Long> reference_point(const Part& part, const Material<Long>& m,
   return s;
 }
 
-/// Quantities that the engine computes for a material point.
+/// Reference values at a material point: s; its first and second time derivatives s1 = J q_s_dot and
+/// s2 = Jdot q_s_dot, for constant q_s_dot; and J.
 struct ReferencePoint {
   Vec3<double> s, s1, s2;
   Eigen::Matrix3Xd J;
@@ -72,7 +74,7 @@ struct ReferencePoint {
 
 class Reference {
  public:
-  /// References a part at values q_s and rates of its dynamic parameters.
+  /// part: must outlive this object. q_s, q_s_dot: values and rates of its dynamic parameters.
   Reference(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot)
       : part_(part), q_s_(q_s), q_s_dot_(q_s_dot) {
     const ParameterValues<double> rest = part.parameters().rest();

@@ -1,5 +1,5 @@
-// Changes that must not affect a motion: units, orientation, order of parts, unrelated parts, threads,
-// output, features with zero effect.
+// Tests of changes that must not affect a motion: units, orientation, order of parts, unrelated parts,
+// threads, queries, resuming, features with zero effect.
 #include "catch.h"
 
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 
-/// Units of a scene. The scene is defined in metres, kilograms and seconds, and is multiplied into other
-/// units.
+/// Units of a scene. The scene is defined in metres, kilograms and seconds; the members convert its numbers
+/// to other units.
 struct Units {
   double length = 1, mass = 1, time = 1;
   double force() const { return mass * length / (time * time); }
@@ -86,7 +86,8 @@ TEST_CASE("N62: units that differ by powers of two give identical bits after sca
 
 namespace {
 
-/// Runs a scene with one deforming part and springs, rotated as a whole.
+/// Runs a scene with a deformable part a, a box b and springs, rotated as a whole. reversed: adds the parts
+/// in reverse order. others: adds a third part c, which nothing connects to them. Returns q and v of a and b.
 Result run_rotated(const Eigen::Quaterniond& rotation, const char* method, bool reversed = false,
                    bool others = false) {
   MultiBody body;
@@ -172,8 +173,8 @@ TEST_CASE("N64: the order of parts and unrelated parts do not change the motion"
 }
 
 TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]") {
-  // Under x -> -x these change their sign: the twist, the bend's direction, the shear along x, two components
-  // of omega and two of the quaternion.
+  // The reflection x -> -x changes the signs of c.x, of the twist, of the shear along x, of two components of
+  // omega and of two components of the quaternion. A direction of the bend becomes pi minus the direction.
   for (const char* method : kMethods) {
     Result results[2];
     for (int mirrored = 0; mirrored < 2; ++mirrored) {

@@ -1,4 +1,4 @@
-// Implementation of advance.h.
+// Function bodies of advance.h: changes of coordinates and velocities of parts.
 #pragma once
 
 #include <pliant/body/advance.h>

@@ -1,4 +1,4 @@
-// Implementation of MultiBody: adding parts, joints and loads.
+// Function bodies of MultiBody: adding parts, joints and loads.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Implementation of PlacedPoint.
+// Function bodies of PlacedPoint.
 #pragma once
 
 #include <utility>

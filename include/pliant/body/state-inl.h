@@ -1,4 +1,4 @@
-// Implementation of state.h.
+// Function bodies of state.h.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,6 @@
-// The times at which impacts happen within a motion.
+// The times at which impacts happen within a motion. locate_impact() finds the first zero of the smallest
+// gap: a bracket, regula falsi on the dense output of the method (Illinois variant, Dowell and Jarratt 1971),
+// then secants with steps of the method. The paper has no such search.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // One link of a chain, T(p, h; b), applied to a batch of jets. Dual numbers in the few variables of the link
-// give its derivatives F = dT/dp, T_h = dT/dh and G_T = dT/db. They are multiplied into the chain (README.md
-// of this folder):
+// give its derivatives F = dT/dp, T_h = dT/dh and G_T = dT/db. chain_columns() multiplies them into J, the
+// Jacobian of the reference shape s in Eq. (9) (README.md of this folder):
 //   J <- [F J + T_h dh/da, G_T]
 #pragma once
 

@@ -26,7 +26,7 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   return sum;
 }
 
-/// A rotation whose cosine is at or below this value counts as a half turn. The sign of its axis is not
+/// A rotation whose cosine is at or below this value is treated as a half turn. The sign of its axis is not
 /// defined, so rotation_vector first turns it by kOffHalfTurn.
 inline constexpr double kHalfTurn = -1 + 1e-12;
 inline constexpr double kOffHalfTurn = 1e-5;  // rad

@@ -6,7 +6,8 @@ namespace pliant {
 /// Dense output of a Runge-Kutta method: a polynomial in the fraction x of the step, from 0 to 1 (Hairer,
 /// Norsett & Wanner, Solving Ordinary Differential Equations I, section II.6):
 ///   u(x) = u_0 + x (u_1 - u_0 + y (a + x (b + y (h d_0 k + x (h d_1 k + y (...))))))),   y = 1 - x,
-/// with a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h k_end - a, as in cubic Hermite interpolation.
+/// with a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h k_end - a, as in cubic Hermite interpolation. k are the
+/// rates of all stages, k_end those at the end of the step, and d_j k = sum_i d_ji k_i.
 struct ContinuousExtension {
   int stages;       ///< additional stages, after the rates at the end of the step
   const double* a;  ///< row by row, one row for each additional stage: weights of all k before it
@@ -19,8 +20,9 @@ struct ButcherTableau {
   const char* name;
   int order, stages;
   const double *a, *b, *c;  ///< a: row by row the entries below the diagonal, from the second row on
-  /// h sum error_i k_i is the difference from a method of lower order; second_error: from one of still lower
-  /// order, nullptr if there is none. They have one more entry if the rates at the end of the step count.
+  /// h sum error_i k_i is the difference from a method of lower order. second_error: the difference from a
+  /// method of still lower order; nullptr if there is none. If rates_at_end is true, both have one more
+  /// entry.
   const double *error, *second_error;
   int error_order;    ///< the estimate is O(h^(error_order + 1))
   bool rates_at_end;  ///< whether the estimate uses the rates at the end of the step

@@ -78,7 +78,8 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   powers_.col(stage) = work.power;
 }
 
-/// The rates depend on the gains of Baumgarte's terms, which may depend on the length of the step.
+/// The rates are valid only if the gains of Baumgarte's terms are equal too; these may depend on the length
+/// of the step.
 PLIANT_INLINE bool ExplicitRungeKutta::end_rates_valid(const Dynamics& dynamics, double t,
                                                        const State& state) const {
   auto gains = [&](double step) {
@@ -148,7 +149,7 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const 
     return Integrator::path(dynamics, low, h, high, counters);
   try {
     return dense_output(dynamics, low, h, high, counters);
-  } catch (const StepFailure&) {  // an additional stage leaves the range of the model
+  } catch (const StepFailure&) {  // the model cannot be evaluated at an additional stage
   } catch (const InvertedElement&) {
   }
   return Integrator::path(dynamics, low, h, high, counters);

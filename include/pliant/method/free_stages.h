@@ -33,7 +33,8 @@ class FreeStages {
   void advance(int stage, const VecX<double>& q_start, const VecX<double>& v_start, VecX<double>& q,
                VecX<double>& v) const;
   /// Computes the error estimate h sum_j weights_j exp(A (1 - c_j) h) (0, n_j - n_0) of the free oscillators.
-  /// weights: `count` numbers, one more than stages if the rates at the end of the step count.
+  /// weights: `count` numbers, one more than stages if the estimate uses the rates at the end of the
+  /// step.
   void estimate_error(const double* weights, int count, VecX<double>& q_error, VecX<double>& v_error) const;
 
  private:

@@ -1,4 +1,4 @@
-// Implementation of ContinuumEnergy: energy, force and stiffness of an elastic material under the map s.
+// Function bodies of ContinuumEnergy: energy, force and stiffness of an elastic material under the map s.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Implementation of LinearInertia: M and g_q of Eq. (11) from moments.
+// Function bodies of LinearInertia: M and g_q of Eq. (11) from moments.
 #pragma once
 
 #include <Eigen/Geometry>

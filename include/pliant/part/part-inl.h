@@ -1,4 +1,4 @@
-// Implementation of Part: the steps that compute the constants of a part.
+// Function bodies of Part: the steps that compute the constants of a part.
 #pragma once
 
 #include <vector>

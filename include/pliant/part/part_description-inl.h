@@ -1,4 +1,4 @@
-// Implementation of PartDescription: the setters of a part with their checks, and the checks of the whole
+// Function bodies of PartDescription: the setters of a part with their checks, and the checks of the whole
 // description.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Implementation of PartEvaluation, geometry: reference shape, gradients, normals, and the inverse map from
-// points to material points.
+// Function bodies of PartEvaluation, geometry: reference shape s, Eq. (3), gradients, normals, and the
+// inverse map from points to material points.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,7 @@
-// The evaluation of a part at given values of its parameters: the reference shape s (Eq. (3)), its
-// derivatives J = ds/dq_s and Jdot q_s_dot (Eqs. (7)-(9)), normals, the inverse map, and the mass matrix M
-// and the inertial forces g_q of Eq. (11). Part (part.h) derives from PartEvaluation, which derives from
-// PartDescription. The functions are implemented in part_evaluation-inl.h (geometry) and inertia-inl.h (M and
-// g_q).
+// The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
+// J = ds/dq_s, Eq. (9), and Jdot q_s_dot, normals, the inverse map, and the mass matrix M and the inertial
+// forces g_q of Eq. (11). Part (part.h) derives from PartEvaluation, which derives from PartDescription.
+// Function bodies: part_evaluation-inl.h (geometry), inertia-inl.h (M and g_q).
 #pragma once
 
 #include <memory>

@@ -2,9 +2,9 @@
 //   s = T(e(u; a); b)
 // Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
 // taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; their
-// derivatives J = ds/dq_s and Jdot q_s_dot, Eqs. (4) and (7), come from dual numbers. Primitive evaluates s,
-// J and the rates for batches of material points. Everything else is in Part, which does not depend on the
-// types.
+// derivatives come from dual numbers: J = ds/dq_s of Eq. (9), J q_s_dot of Eq. (7), and Jdot q_s_dot, a term
+// of g_q in Eq. (11). Primitive evaluates s, J and the rates for batches of material points. Everything else
+// is in Part, which does not depend on the types.
 //
 //   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
 //   body.place({0, 0, 1}).rest({{"a3", 2.0}}).stiffness({{"bend.angle", 50.0}});

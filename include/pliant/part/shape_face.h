@@ -1,6 +1,6 @@
-// ShapeFace: the virtual interface of a shape, for computations at load time and for output. The kernels of a
-// step are templates (shape_jets.h). shape/shape.h documents the members of a shape; the optional ones have
-// defaults here.
+// ShapeFace: the interface of a shape with virtual functions, for computations when a part is prepared and
+// for output. A step uses templates instead (shape_jets.h). shape/shape.h documents the members of a shape;
+// the optional ones have defaults here.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class ShapeFace {
 
   /// Returns e(u; a), m, Eq. (3).
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns h, half the extent along z, m. Links measure zeta = z / h.
+  /// Returns h, half the extent along z, m. Global deformations use zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
   /// Returns w of the material point at x: 1 on the surface, below 1 inside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
@@ -35,53 +35,57 @@ class ShapeFace {
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point (u, v, w) with e(u, v, w) = x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point of the surface for a direction (or pair of angles) g of the mesh pattern.
+  /// Returns the material point of the surface for a mesh vertex. g: its direction, or for a torus its two
+  /// angles (u, v, 0).
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
-  /// Returns the semi-axes of a shape that is an ellipsoid, m.
+  /// Returns the semi-axes if the shape is an ellipsoid, m; else nullopt.
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
-  /// Returns the half sizes of a shape that is a box, m.
+  /// Returns the half sizes if the shape is a box, m; else nullopt.
   virtual std::optional<Vec3<double>> half_sizes(ShapeParameters a) const = 0;
-  /// Returns e and its derivatives along the three material directions of the dual parts of m.
+  /// Returns e and its derivatives along three directions in (u, v, w). The dual parts of m define these
+  /// directions; see material_with_tangents().
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
-  /// Returns whether the strain of the material stays bounded when an exponent changes. For the trigonometric
-  /// map of superquadrics it does not: with eps/eps_0 = p, the deformation gradient grows as |x|^(p - 1) at
-  /// the coordinate planes.
+  /// Whether the strain stays bounded when an exponent changes. For the trigonometric map of superquadrics
+  /// it does not: if eps changes from eps_0 to p eps_0, the deformation gradient grows as |x|^(p - 1) at the
+  /// coordinate planes.
   virtual bool bounded_exponents() const = 0;
   /// Whether e is linear in all parameters that are lengths.
   virtual bool linear_lengths() const = 0;
 
-  // Quadrature. The rest map places the quadrature points at rest. It is e of the shape itself, or e of
-  // another shape with the same solid.
+  // Quadrature. The rest map maps (u, v, w) to the quadrature points of the shape at rest. It is e of the
+  // shape itself, or e of another shape that covers the same solid (member RestMap).
 
-  /// Returns tangents() of the rest map.
+  /// Returns the rest map and its derivatives, as tangents() does for e.
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
-  /// Returns the material point of the shape at the place to which the rest map maps m.
+  /// Returns the material point of the shape whose position is that of the rest map at m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns the panels of the quadrature along u and along v.
+  /// Returns the panels of the quadrature along u (profile) and along v (ring). dynamic_exponents: whether an
+  /// exponent is a degree of freedom.
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
-  /// Returns the exponent eps of (X, Y) = (C_v^eps, S_v^eps) for which the rings of the rest map are
-  /// superellipses; 1 for round rings.
+  /// Returns the exponent eps of the superellipse (C_v^eps, S_v^eps) that a ring (u, w) = const of the rest
+  /// map follows; 1 for an ellipse.
   virtual double ring_exponent(ShapeParameters a) const = 0;
-  /// Whether the shape has its plane sections in closed form.
+  /// Whether the plane sections z = const of the shape are known in closed form.
   virtual bool has_sections() const = 0;
-  /// Returns area and moments of the plane section at zeta = z / h; gap: 1 - |zeta|.
+  /// Returns the area and the mean squares of the plane section at zeta = z / h. gap: 1 - |zeta|.
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
   /// Returns the panels of the quadrature over plane sections along zeta.
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
 };
 
-/// Returns the material point at x of a shape that has no label function, by Newton's method on e(u, v, w) =
-/// x from the direction of x. Throws std::runtime_error if the method does not converge: the shape is not
-/// star-shaped and needs a label function.
+/// Returns the material point at x (m) of a shape that has no label function. Newton's method solves
+/// e(u, v, w) = x and starts in the direction of x. Throws std::runtime_error if the method does not
+/// converge: the shape is not star-shaped and needs a label function.
 Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
-/// Returns the gradient of w of that material point, 1/m; at the poles the limit along a meridian.
+/// Returns the gradient of w at x, 1/m, for a shape that has no label function. At the poles it is the limit
+/// along a meridian.
 Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
 
 namespace detail {
 
-// Traits that detect the optional members of a shape.
+// Whether a shape has an optional member, and its rest map.
 template <class Shape, class = void>
 struct RestMapOf {
   using Map = Shape;
@@ -109,7 +113,7 @@ PLIANT_HAS_MEMBER(linear_lengths)
 
 }  // namespace detail
 
-/// Implements ShapeFace for the type Shape.
+/// The ShapeFace of a shape type.
 template <class Shape>
 class ShapeFaceOf final : public ShapeFace {
   static constexpr int K = shape_size<Shape>;

@@ -1,5 +1,6 @@
-// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its Jacobian columns de/da of
-// the dynamic parameters and its first and second derivatives along a + t a_dot.
+// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its first and second
+// derivatives along a + t a_dot. Its Jacobian de/da for the dynamic parameters gives the first columns of J,
+// Eq. (9); the links of the chain then multiply them (deform/link.h).
 #pragma once
 
 #include <type_traits>

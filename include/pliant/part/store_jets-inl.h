@@ -1,4 +1,4 @@
-// Implementation of store_jets().
+// Function body of store_jets().
 #pragma once
 
 #include <algorithm>

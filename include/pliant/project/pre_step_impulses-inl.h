@@ -1,5 +1,5 @@
 // The function pre_step_impulses() of project.h: impulses at the start of a step of semi-implicit Euler, so
-// that limits, strings and joints are satisfied at its end.
+// that limits, strings and joints, C = 0 of Eq. (12), are satisfied at its end.
 #pragma once
 
 #include <pliant/project/project.h>

@@ -1,5 +1,5 @@
 // The functions project_joints(), project_limits() and engage_joints() of project.h: joints and strings
-// become closed or taut, and groups are projected onto joints and limits.
+// become closed or taut, and groups are projected onto joints, C = 0 of Eq. (12), and limits.
 #pragma once
 
 #include <pliant/project/project.h>

@@ -1,5 +1,5 @@
-// The projection of a group of parts onto its joints and limits, Eqs. (12) and (13). The projection after a
-// step and the impulses before a step use it.
+// The projection of a group of parts onto its joints, C = 0 of Eq. (12) and C_dot = 0, and onto its limits.
+// The projection after a step and the impulses before a step use it.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// Capsule: a cylinder of radius r and length l along z between two half balls. The side is at |u| <= pi/4,
-// the caps beyond. The polar angle on a cap is twice the polar angle of the material direction. The surface
-// points, of which e is the multiple w, are:
+// Capsule: a cylinder of radius r and length l along z between two half balls. The side has |u| <= pi/4, and
+// the caps have |u| > pi/4. On a cap the angle from the z axis, seen from the centre of its ball, is twice
+// the material angle from the pole, pi/2 - |u|. e is w times the surface point:
 //   side  (r C_v, r S_v, (l/2) tan u)
 //   cap   (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
 #pragma once
@@ -84,7 +84,7 @@ inline std::vector<Panel> Capsule::ring(const Vec<double, 2>&, bool) {
   return detail::round_ring();
 }
 inline Section Capsule::section(double zeta, double gap, const Vec<double, 2>& a) {
-  const double h = a[0] + a[1] / 2, from_end = gap * h;  // distance from the pole
+  const double h = a[0] + a[1] / 2, from_end = gap * h;  // h - |z|: distance from the pole along z
   const double beyond = std::abs(zeta) * h - a[1] / 2;
   const double r2 = beyond > 0 ? from_end * (a[0] + beyond) : a[0] * a[0];
   return {kPi * r2, r2 / 4, r2 / 4};

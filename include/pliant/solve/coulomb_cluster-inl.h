@@ -1,4 +1,4 @@
-// Sweeps with extrapolation, and the order in which the methods are tried.
+// Function bodies of coulomb_cluster.h: sweeps with extrapolation, and the sequence of the methods.
 #pragma once
 
 #include <pliant/solve/coulomb_cluster.h>
@@ -17,28 +17,30 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerance of the sweeps: relative to the largest initial contact velocity, and in units of the rounding of
-/// the velocities themselves.
+/// Tolerances of the sweeps; the larger one is used. kSweepExact is relative to the largest contact velocity
+/// without impulses. kSweepUlps is in units of the rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
-/// Relative tolerance for clusters with points, which are many and weakly coupled.
+/// kSweepExact for clusters with points (movers of three velocities, nodes of a mesh). Points are many and
+/// weakly coupled.
 inline constexpr double kSweepExactOfPoints = 1e-6;
-/// Rounds of the search: number of sweeps, and number of earlier sweeps for the extrapolation.
+/// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation.
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
-/// Growth of the residual, relative to the best one, that restarts the extrapolation.
+/// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
 inline constexpr double kSweepWorse = 4;
-/// Relative regularisation of the extrapolation, for linearly dependent sweeps.
+/// Relative regularisation of the extrapolation, in case that sweeps are linearly dependent.
 inline constexpr double kSweepRegularisation = 1e-14;
-/// kAcceptableResidual for large clusters and for points; the compliance of the second search, as a fraction
-/// of W.
+/// kAcceptableResidual for large clusters and for clusters with points; and the compliance of contacts in the
+/// second search, as a fraction of the diagonal of W.
 inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
-/// The result of the search with compliant contacts, whose impulses are bounded, is preferred if its residual
-/// is less than this multiple of the other residual.
+/// The result of the search with compliant contacts is preferred if its residual is less than this multiple
+/// of the residual of the first search. Its impulses are bounded.
 inline constexpr double kCompliantPreference = 2;
-/// A search stalls if a round leaves more than this fraction of the residual before it. Nearly equal contacts
-/// can leave a residual that only unreasonably large impulses would remove.
+/// A search stalls if a round leaves more than this fraction of the residual of the round before. Nearly
+/// equal contacts can leave a residual that only unreasonably large impulses would remove.
 inline constexpr double kSweepStalled = 0.1;
-/// A warm start is used if its residual is less than this fraction of the largest initial contact velocity.
+/// A warm start is used if its residual is at most this fraction of the largest contact velocity without
+/// impulses.
 inline constexpr double kNearWarmStart = 0.1;
 
 /// Maximum number of pairs of sweeps in the extrapolation, and the matrix of their products.
@@ -75,7 +77,7 @@ PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, 
       has_points_ = has_points_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
 }
 
-/// Computes scale_, exact_ and acceptable_ for the present velocities, which are those without impulses.
+/// Computes scale_, exact_ and acceptable_. The present velocities must be those without impulses.
 PLIANT_INLINE void CoulombCluster::set_scale() {
   double terms = 0;
   scale_ = 0;
@@ -96,7 +98,7 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
                            scale_);
 }
 
-/// Sets the compliance of all contacts, as a fraction of the diagonal of W.
+/// Sets the compliance of all contacts. softness: as a fraction of the diagonal of W.
 PLIANT_INLINE void CoulombCluster::soften(double softness) {
   softness_ = softness;
   for (int i = 0; i < size_; ++i) {
@@ -106,7 +108,7 @@ PLIANT_INLINE void CoulombCluster::soften(double softness) {
   }
 }
 
-/// Returns the velocity u of contact i, including its compliance.
+/// Returns the velocity u of contact i, plus its compliance times its impulse.
 PLIANT_INLINE Vec3<double> CoulombCluster::velocity(int i) const {
   Vec3<double> u = system_.velocity_at(contacts_[i], system_.used_sides_, system_.x_);
   if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
@@ -122,7 +124,7 @@ PLIANT_INLINE Vec3<double> CoulombCluster::law_impulse(int i, const Vec3<double>
   return point(i).law.impulse(b);
 }
 
-/// Changes the impulse of contact i and the velocities of the movers.
+/// Adds dp to the impulse of contact i and updates the velocities of the movers.
 PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   p(i) += dp;
   for (int r = point(i).first_push; r < point(i).last_push; ++r) {
@@ -138,8 +140,8 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   }
 }
 
-/// Returns exact_, or the rounding level of the present impulses if that is larger. It is large where a light
-/// part supports a heavy one.
+/// Returns exact_, or the rounding error of the present impulses as a velocity if that is larger, up to
+/// acceptable_. This rounding error is large where a light part supports a heavy one.
 PLIANT_INLINE double CoulombCluster::exact_level() const {
   double largest = 0;
   for (int i = 0; i < size_; ++i)
@@ -148,8 +150,8 @@ PLIANT_INLINE double CoulombCluster::exact_level() const {
       exact_, std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
 }
 
-/// Solves the law of each contact once, in ascending or descending order. Returns the largest change of a
-/// velocity.
+/// Solves the law of each contact once, in ascending (forward) or descending order. Returns the largest
+/// change of a velocity.
 PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
   double change = 0;
   for (int k = 0; k < size_; ++k) {
@@ -217,7 +219,7 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
   copy_impulses(now);
   double best_error = std::numeric_limits<double>::infinity();
   int filled = 0, slot = 0;
-  bool has_pair_before = false;  // whether last and last_r contain the pair before
+  bool has_pair_before = false;  // whether last and last_r contain the previous pair
   for (int i = 0; i < max_sweeps; i += 2) {
     sweep(true);
     const double change = sweep(false);
@@ -259,8 +261,8 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
   return false;
 }
 
-/// Returns whether the cluster uses warm starts: not for one contact, which is solved directly, and not for
-/// points, which are many and weakly coupled.
+/// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with points
+/// need none, because points are weakly coupled.
 PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !has_points_;
 }
@@ -274,7 +276,7 @@ PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
   return false;
 }
 
-/// Runs the rounds of sweeps and Newton's method. Returns whether it found the solution.
+/// Runs the rounds of sweeps, each followed by Newton's method. Returns whether it found the solution.
 PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.
@@ -282,7 +284,7 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   const auto* first = has_points_ ? detail::kSweepRoundsOfPoints.begin() : detail::kSweepRounds.begin();
   const auto* last = has_points_ ? detail::kSweepRoundsOfPoints.end() : detail::kSweepRounds.end();
   double before = std::numeric_limits<double>::infinity();
-  VecX<double> previous;  // the impulses of the round before
+  VecX<double> previous;  // the impulses of the previous round
   for (const auto* round = first; round != last; ++round) {
     const auto& [max_sweeps, history] = *round;
     if (many && history == 0) continue;  // too slow, like Newton's method for many points
@@ -299,9 +301,9 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
-/// If the problem has no solution (joints and contacts contradict each other) or the search fails, the search
-/// is repeated with compliant contacts, for which a solution exists. The better one of the two results is
-/// used.
+/// If the search fails, it is repeated with compliant contacts, for which a solution exists. It fails, for
+/// instance, if joints and contacts contradict each other. kCompliantPreference decides between the two
+/// results.
 PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
   soften(0);
   if (size_ == 1) {

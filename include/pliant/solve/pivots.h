@@ -19,8 +19,7 @@ enum class RankRule {
   /// Rows whose relative pivot is at most Pivots::kVanished.
   decide,
   /// The rows of the previous factorisation, and rows whose relative pivot is at most Pivots::kRounding.
-  /// Within
-  /// a step, joints are slightly open, which makes dependent rows look independent.
+  /// Within a step, joints are slightly open, which makes dependent rows look independent.
   keep,
   /// Rows whose relative pivot is at most Pivots::kRounding, for positions next to a singular one.
   rounding

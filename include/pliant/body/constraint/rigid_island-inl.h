@@ -1,4 +1,4 @@
-// Implementation of RigidIsland: set-up, accelerations, and closing of joints.
+// Function bodies of RigidIsland: set-up, accelerations, and closing of joints.
 #pragma once
 
 #include <algorithm>

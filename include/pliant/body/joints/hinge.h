@@ -1,7 +1,7 @@
 // A hinge: two points coincide, and the directions of two axes coincide.
 //   C = (x_0 - y_0, size (theta / sin theta) (a . b_2, a . b_3)),   cos theta = a . b_1
-// Here a is the first axis of the frame at x_0, b is the frame at y_0, and theta is the angle between the
-// axes.
+// Here x_0 and y_0 are the two points, a is the first axis of the frame at x_0, b_1, b_2 and b_3 are the axes
+// of the frame at y_0, and theta is the angle between a and b_1.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>
@@ -12,12 +12,12 @@ namespace pliant {
 
 struct Hinge {
   static constexpr const char* name = "hinge";
-  static constexpr const char* formula = "x_0 - x_1 = 0, the axis at x_0 along that at x_1";
+  static constexpr const char* formula = "x_0 - x_1 = 0, the axis at x_0 is parallel to the axis at x_1";
   static constexpr JointKeys keys{JointKey::axis, JointKey::from_axis};
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
-  double size = 1;  ///< m; scales angles to lengths
+  double size = 1;  ///< factor from angles (rad) to lengths, m
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

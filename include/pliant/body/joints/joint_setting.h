@@ -11,7 +11,7 @@
 namespace pliant {
 
 struct JointSetting {
-  Point from, to;     ///< the points x_0 and x_1 (weld: x_0 and y_0)
+  Point from, to;     ///< the points x_0 and x_1 (hinge, slider, weld: x_0 and y_0)
   double length = 0;  ///< length of a rod or string, m
   /// Direction at `to` in the frame of its part at rest, or in the world: normal, line or hinge pin.
   Vec3<double> axis{0, 0, 1};

@@ -11,12 +11,13 @@ namespace pliant {
 
 struct Slider {
   static constexpr const char* name = "slider";
-  static constexpr const char* formula = "(x_0 - x_1) x d = 0 with the direction d at x_1, and no turning";
+  static constexpr const char* formula =
+      "(x_0 - x_1) x d = 0 with the direction d at x_1, and no relative rotation";
   static constexpr JointKeys keys{JointKey::axis, JointKey::rotation};
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
-  double size = 1;  ///< m; scales angles to lengths
+  double size = 1;  ///< factor from angles (rad) to lengths, m
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

@@ -1,8 +1,8 @@
 // The stages of the evaluation of one part, in the order of sections 2 and 3 of the paper:
-//   1 positions      evaluate_positions()      Eqs. (1), (7)-(9)
+//   1 positions      evaluate_positions()      Eqs. (1)-(3), (5), (7)-(9); x_dot = L q_dot in place_ports()
 //   2 mass           evaluate_mass()           M and g_q of Eq. (11)
-//   3 forces         evaluate_own_forces()     g_q - K (q - rest) - D v, gravity, drag
-//                    add_port_forces()         f_q = L^T f of the loads
+//   3 forces         evaluate_own_forces()     g_q - K (q - rest) - D v of Eq. (11), gravity, drag
+//                    add_port_forces()         f_q = L^T f of the loads, Eq. (11)
 //   5 accelerations  accelerate_freely()       a = M^-1 f, as if there were no joints
 // Stage 4, the joints, is in constraint/constraints.h.
 #pragma once

@@ -53,17 +53,17 @@ class MeshFinder {
                    const Vec3<double>& x) const;
   std::map<int, BoundingBall> balls(const State& state, double t) const;
   PlacedMesh place(const State& state, double t, const BoundingBall& ball) const;
-  /// Calls act(one, other, rule) for each pair of entries of a map over parts whose balls meet and that may
-  /// touch.
+  /// Calls act(one, other, rule) for each pair of parts that may touch and whose balls meet. all: a map from
+  /// parts to things; one and other are entries of it.
   template <class Thing, class F>
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
   double local_travel(const State& state, double t, const BoundingBall& ball) const;
-  /// Whether two parts overlap more deeply than the last step can have moved them. touches: of their meshes.
-  /// Seven parameters, because the caller has computed the balls and the meshes already.
+  /// Whether the overlap of two parts is deeper than their motion in the last step. touches: the overlaps of
+  /// their meshes. Seven parameters, because the caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
-  /// Returns the contact that separates two such parts by their rigid motion.
+  /// Returns one contact that separates two parts in deep overlap.
   Contact separation_contact(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                              const PlacedMesh& a, const PlacedMesh& b) const;
 

@@ -1,5 +1,5 @@
-// An immobile triangle mesh for contact search: checked, with equal vertices merged, and with its edges, its
-// flat faces and a tree of boxes.
+// An immobile triangle mesh for contact search. The constructor checks the mesh, merges equal vertices, finds
+// the edges and the flat faces, and builds a tree of boxes.
 #pragma once
 
 #include <array>
@@ -15,16 +15,17 @@ namespace pliant {
 
 class ObstacleMesh {
  public:
-  /// vertices: m, world. triangles: vertex numbers, counter-clockwise seen from the free side; parts pass
-  /// through a triangle from its other side. Throws std::invalid_argument that names the element and its
-  /// position for a vertex that is not finite or in no triangle, a triangle with an unknown vertex or without
-  /// area, and an edge with more than two triangles or with two triangles of opposite orientation.
+  /// vertices: m, world. triangles: vertex numbers, counter-clockwise seen from the free side. A part that
+  /// comes from the other side of a triangle passes through it. Throws std::invalid_argument that names the
+  /// element and its position for a vertex that is not finite or in no triangle, a triangle with an unknown
+  /// vertex or without area, and an edge with more than two triangles or with two triangles of opposite
+  /// orientation.
   ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
 
   struct Edge {
     std::array<int, 2> vertex;    ///< triangle[0] is on its left, seen from the free side
     std::array<int, 2> triangle;  ///< the second one is -1 at the border of an open mesh
-    bool sharp;                   ///< a ridge or the border: a part outside both faces may touch it
+    bool sharp;  ///< whether a part outside both faces can touch it: a convex edge or the border
   };
   /// A set of connected triangles in one plane.
   struct Face {
@@ -37,7 +38,7 @@ class ObstacleMesh {
   /// Returns the edges of a triangle between its corners 0 and 1, 1 and 2, 2 and 0.
   const std::array<int, 3>& edges_of(int triangle) const { return edges_of_[at(triangle)]; }
   Vec3<double> normal(int triangle) const { return normals_.col(triangle); }
-  /// Unit vector along an edge.
+  /// Returns the unit vector along an edge, from vertex[0] to vertex[1].
   Vec3<double> along(const Edge& edge) const {
     return (x_.col(edge.vertex[1]) - x_.col(edge.vertex[0])).normalized();
   }
@@ -45,13 +46,13 @@ class ObstacleMesh {
   int face_of(int triangle) const { return face_of_[at(triangle)]; }
   /// Returns the edges that end in a vertex; empty if none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
-  /// Whether a unit vector at an edge or a corner points away from all faces that meet there. `sine` is the
-  /// tolerance, as the sine of an angle.
+  /// Whether a unit vector at an edge or a corner is in the normal cone there, that is, points away from all
+  /// faces that meet there. `sine` is the tolerance, as the sine of an angle.
   bool points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const;
   bool points_outward(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether the mesh has no border.
   bool closed() const { return closed_; }
-  /// Whether the mesh is flat and has two sides.
+  /// Whether the mesh is a flat plate with two sides and without thickness.
   bool is_plate() const { return closed_ && faces_.size() == 2; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
@@ -59,7 +60,7 @@ class ObstacleMesh {
   void query(const Eigen::AlignedBox3d& box, std::vector<int>& found) const;
   /// Returns the point of a triangle that is nearest to x.
   Vec3<double> nearest(int triangle, const Vec3<double>& x) const;
-  /// Whether some triangle is at most this distance (m) away from x.
+  /// Whether the distance of x from the mesh is at most `distance` (m).
   bool comes_near(const Vec3<double>& x, double distance) const;
 
  private:

@@ -1,4 +1,5 @@
-// Forces, energy and stiffness of the linear membrane.
+// Forces, energy and stiffness of the linear membrane. add_force() evaluates -K q_d of Eq. (11), triangle by
+// triangle.
 #pragma once
 
 #include <pliant/local/shell/linear_membrane.h>

@@ -1,4 +1,5 @@
-// Element matrices, forces and energy of the loaded membrane.
+// Element matrices, forces and energy of the loaded membrane. add_force() evaluates -K q_d of Eq. (11),
+// triangle by triangle.
 #pragma once
 
 #include <cmath>

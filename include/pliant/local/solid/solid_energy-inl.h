@@ -1,4 +1,5 @@
-// Evaluation of solid energies: nodal forces, their derivative, element stiffness matrices.
+// Evaluation of solid energies: nodal forces, their derivative, element stiffness matrices. add_force()
+// evaluates the elastic force element by element: -K q_d of Eq. (11) for the linear law, -dE/dx for others.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Implementation of LocalDeformation, and the choice of its type by the settings.
+// Function bodies of LocalDeformation, and the choice of its type by the settings.
 #pragma once
 
 #include <memory>

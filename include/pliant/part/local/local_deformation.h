@@ -76,7 +76,7 @@ class LocalDeformation {
   virtual const NodalDeformation* nodal() const { return nullptr; }
   /// Returns this object if it is a ModalDeformation, else nullptr.
   virtual const ModalDeformation* modal() const { return nullptr; }
-  /// Returns the oscillators that the local coordinates are if their elasticity is diagonal, else nullptr.
+  /// Returns the oscillators if the elasticity is diagonal in the local coordinates, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, one function for each stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The

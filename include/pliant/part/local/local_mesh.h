@@ -1,5 +1,5 @@
 // A mesh of the material domain of a part at its rest shape: of the surface of a shell, or of the body of a
-// solid.
+// solid. NodeWeights are a row of the shape matrix S of d = S q_d, Eq. (5).
 #pragma once
 
 #include <vector>

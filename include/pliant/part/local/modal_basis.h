@@ -1,5 +1,5 @@
 // A global basis of local deformation: scalar fields phi_a of material points, orthogonal over the mass of
-// the part, and modes, which are combinations of displacements along these fields,
+// the part, and modes, which are combinations of displacements along these fields, Eq. (5),
 //   d(u) = sum_a phi_a(u) d_a,   d_a = (B q)_a,   int phi_a phi_b dm = m_a delta_ab
 // The coefficients d_a play the role of nodes ("spectral nodes"): the integral over mass of a product of two
 // fields is a sum over them, int f g dm = sum_a m_a f_a g_a.

@@ -1,4 +1,5 @@
-// Implementation of ModalDeformation: construction, and the stages of the dynamics (modal_deformation.h).
+// Function bodies of ModalDeformation: construction, and the stages of the dynamics (modal_deformation.h).
+// forces() adds g_q and -K q_d of Eq. (11); K is diagonal, with the squared frequencies of the modes.
 #pragma once
 
 #include <cmath>

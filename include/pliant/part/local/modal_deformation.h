@@ -1,5 +1,5 @@
-// Local deformation by modes. q_d are the amplitudes of the modes, which are oscillators. The modes are
-// orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so the
+// Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes, which are oscillators. The modes
+// are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so the
 // reference conditions hold for every q_d. With p_a = s_a + d_a of the spectral nodes (modal_basis.h) and G_a
 // = [e_a I, -[p_a]x, J_a],
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a

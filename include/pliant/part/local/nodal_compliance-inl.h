@@ -1,4 +1,4 @@
-// Implementation of NodalDeformation: the response to impulses of joints and limits, M^-1.
+// Function bodies of NodalDeformation: the response to impulses of joints and limits, M^-1.
 #pragma once
 
 #include <vector>
@@ -35,7 +35,8 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const Eigen::Index n = n_nodes(), n_r = w.H0.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
-  // The solve of nodal_deformation.h for unit impulses: of_d - f and of_all, one column for each impulse.
+  // Solve the equations of nodal_deformation.h for unit impulses. Each column of on_d is of_d - f for one
+  // impulse, and each column of loads is of_all.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();
   loads.rightCols(n_p) = G0.transpose();
@@ -45,7 +46,7 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   MatX<double> A(n_r + n_p, n_r + n_p);
   A.topRows(n_r) = w.a_of;
   A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;
-  // 1/m of the nodes that two points share.
+  // Add the compliance 1/m of the nodes that two points share.
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = 0; b < points.size(); ++b)
       for (std::size_t i = 0; i < points[a].node.size(); ++i)

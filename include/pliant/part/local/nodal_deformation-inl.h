@@ -1,4 +1,4 @@
-// Implementation of NodalDeformation: construction, names and sizes of its coordinates.
+// Function bodies of NodalDeformation: construction, names and sizes of its coordinates.
 #pragma once
 
 #include <algorithm>

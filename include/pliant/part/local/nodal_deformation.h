@@ -1,5 +1,6 @@
-// Local deformation at the nodes of a mesh: q_d = d at the nodes, in the body frame of the part. The
-// reference conditions are those of mean axes at the current shape (include/pliant/part/local/README.md):
+// Local deformation at the nodes of a mesh, Eqs. (5) and (6): q_d = d at the nodes, in the body frame of the
+// part. The reference conditions are those of mean axes at the current shape
+// (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]      k: nodes
 // Let F be all forces on a node, and F_d those that act on d alone (elasticity that is quadratic in d, and
 // the damping of d_dot). Let f be the generalised forces on (c, theta, q_s) that do not act on nodes. Sums

@@ -1,5 +1,10 @@
-// Implementation of NodalDeformation: the stages of the dynamics with reference conditions
-// (nodal_deformation.h, and include/pliant/part/local/README.md).
+// Function bodies of NodalDeformation: the stages of the dynamics with reference conditions
+// (nodal_deformation.h, and include/pliant/part/local/README.md):
+//   positions()        p = s + d, Eq. (2), in place_nodes()
+//   masses()           M of Eq. (11) at d = 0, and the reference conditions
+//   forces()           g_q of Eq. (11), gravity and drag; add_elasticity() adds -K q_d and its damping
+//   push()             f_q = L^T f of a force at a material point, Eq. (11)
+//   accelerations()    a_r and d_ddot
 #pragma once
 
 #include <algorithm>
@@ -74,8 +79,9 @@ struct ReferenceConditions {
 
 /// Sums over nodes of derivatives of J and Jdot q_s_dot along one parameter q_j.
 struct ShapeDerivativeSums {
-  std::array<Pack, kMaxGlobal> d, d_dot;  ///< of m (dJ_k/dq_j)^T d, and with d_dot, for each parameter k
-  Pack s2 = Pack(0.0);                    ///< of m (d(Jdot q_s_dot)/dq_j)^T d
+  /// Sums of m (dJ_k/dq_j)^T d and of m (dJ_k/dq_j)^T d_dot, for each parameter k.
+  std::array<Pack, kMaxGlobal> d, d_dot;
+  Pack s2 = Pack(0.0);  ///< sum of m (d(Jdot q_s_dot)/dq_j)^T d
 
   ShapeDerivativeSums() {
     d.fill(Pack(0.0));

@@ -1,4 +1,5 @@
-// Sums over the nodes of a part, four lanes wide, and the field G v of a motion of the frame at all nodes.
+// Sums over the nodes of a part, four nodes at a time, and the velocities G v_r of the nodes for d_dot = 0,
+// with v_r = (R^T c_dot, omega, q_s_dot) and G = [I, -[p]x, J] (include/pliant/part/README.md).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -39,13 +40,14 @@ struct VectorSum {
 inline Vec3<Pack> times(const Pack& m, const Vec3<Pack>& a) {
   return {m * a[0], m * a[1], m * a[2]};
 }
+/// Returns a vector with equal lanes.
 inline Vec3<Pack> spread(const Vec3<double>& a) {
   return {Pack(a[0]), Pack(a[1]), Pack(a[2])};
 }
 inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
-/// The cross product. Compilers do not inline that of Eigen for Packs.
+/// Returns the cross product. Compilers do not inline the function of Eigen for Packs.
 [[gnu::always_inline]] inline Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -54,12 +56,13 @@ inline bool any_nonzero(const Eigen::Ref<const VecX<double>>& x) {
   return (x.array() != 0).any();
 }
 
-/// Returns the columns of J of parameter c.
+/// Returns ds/dq_c of all n nodes for dynamic parameter number c, m per unit of the parameter: n numbers
+/// along x, then n along y, then n along z.
 inline const double* column(const NodalWorkspace& w, Eigen::Index n, int c) {
   return w.J.data() + 3 * n * c;
 }
 
-/// The field G v at nodes: v_c + omega x p + J v_s.
+/// The velocities G v_r of nodes: v_c + omega x p + J v_s. `all` is v_r = (v_c, omega, v_s).
 struct FrameMotion {
   Vec3<Pack> c, omega;
   const VecMax<double>& v;
@@ -82,7 +85,8 @@ struct FrameMotion {
   }
 };
 
-/// Returns sum J^T F of parameter k over nodes.
+/// Returns the sum of ds/dq_k . F over the n nodes: the generalised force on dynamic parameter number k. F:
+/// forces on the nodes in the layout of column(), N.
 inline double along_column(const double* F, const NodalWorkspace& w, Eigen::Index n, int k) {
   Pack along(0.0);
   for_each_four(n, [&](const auto& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });

@@ -28,7 +28,7 @@ Vec3<double> ball_direction(const LatticePoint& p);
 struct BallSurface {
   explicit BallSurface(int m);
   std::vector<LatticePoint> points;
-  std::map<LatticePoint, int> index;  ///< of points
+  std::map<LatticePoint, int> index;  ///< number of each point in `points`
   std::vector<std::array<int, 3>> triangles;
 };
 

@@ -1,15 +1,14 @@
 // The body of a part as a mesh of tetrahedra, made once at the rest shape. Its boundary is the Surface of the
 // same resolution: nodes 0 .. n_surface - 1 are the vertices of the surface, in their order.
-//   Balls: the lattice of a cube. Each cell is cut into six tetrahedra around its diagonal away from the
-//   centre
-//     (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice is the surface of
-//     resolution r at w = r / resolution.
-//   Tori: rings of 4n points at w = n / resolution, n = resolution, resolution - 2, ..., swept around the
-//   core ring, which
-//     is a line of nodes.
+//
+// Balls use the lattice of a cube. Each cell is cut into six tetrahedra around the diagonal that points away
+// from the centre (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice is the
+// surface of resolution r at w = r / resolution. Tori use rings of 4n points at w = n / resolution, with
+// n = resolution, resolution - 2, ..., that are swept around the core ring. The core ring is a line of nodes.
+//
 // A quadratic element also has a node on each edge; the order is 0 1 2 3, then 01 12 20 03 13 23. Nodes on
-// edges of the boundary are material points of the surface. Nodes on edges inside are in the middle of the
-// edge in the shape. An enriched element also has a node on each face and one in the middle.
+// edges of the boundary are material points of the surface. Nodes on inner edges are in the middle of the
+// edge in the undeformed shape. An enriched element also has a node on each face and one in the middle.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Implementation of Surface: the mesh of the surface and its normals.
+// Function bodies of surface.h: the mesh of the surface and its normals.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace pliant {
 
 namespace detail {
 
-/// Cosine of the crease angle.
+/// Cosine of the crease angle of 60 degrees, see set_normals().
 inline constexpr double kCreaseCosine = 0.5;
 
-/// Directions and triangles of a torus: a grid of 4 resolution angles around the tube and 8 resolution around
-/// the axis.
+/// Computes the mesh of a torus: a grid with 4 * resolution angles around the tube and 8 * resolution angles
+/// around the axis. places: the two angles of each vertex, rad.
 inline void torus_surface(int resolution, std::vector<Vec3<double>>& places,
                           std::vector<std::array<int, 3>>& triangles) {
   const int round = 8 * resolution, tube = 4 * resolution;
@@ -97,7 +97,8 @@ PLIANT_INLINE TriangleMesh Surface::body_mesh(const Part& part, const ParameterV
 }
 
 PLIANT_INLINE SurfaceNodes surface_nodes(const LocalMesh& mesh) {
-  std::vector<int> number(mesh.nodes.size(), -1);  // of each node within the surface nodes
+  // Position of each node in surface.node; -1 for a node inside.
+  std::vector<int> number(mesh.nodes.size(), -1);
   for (const int node : mesh.triangles.reshaped()) number[static_cast<std::size_t>(node)] = 0;
   SurfaceNodes surface;
   for (std::size_t k = 0; k < number.size(); ++k) {
@@ -126,7 +127,8 @@ PLIANT_INLINE TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::M
     const std::array<Vec3<double>, 3> corner{
         mesh.x.col(mesh.triangles(0, t)), mesh.x.col(mesh.triangles(1, t)), mesh.x.col(mesh.triangles(2, t))};
     for (std::size_t k = 0; k < 3; ++k) {
-      // The weight is the angle of the corner, so that the diagonals of a grid are not visible.
+      // Each triangle has its angle at the vertex as weight. The normals of a grid then do not depend on its
+      // diagonals.
       const Vec3<double> e1 = corner[(k + 1) % 3] - corner[k], e2 = corner[(k + 2) % 3] - corner[k];
       const Vec3<double> normal = e1.cross(e2);
       const double area = normal.norm();

@@ -40,14 +40,14 @@ struct SurfaceNodes {
   std::vector<int> node;
   Eigen::Matrix3Xi triangles;  ///< numbers within `node`, counter-clockwise seen from outside
 
-  /// Returns the rows of these nodes, one a column. all: one row for each node of the mesh.
+  /// Returns the values of these nodes, one column for each. all: one row for each node of the mesh.
   Eigen::Matrix3Xd of(const Eigen::Ref<const Nodes>& all) const;
 };
 /// Returns the surface nodes of a mesh.
 SurfaceNodes surface_nodes(const LocalMesh& mesh);
 
-/// Returns a mesh with vertices x (m). The normal of a vertex is the mean of those of the triangles around
-/// it.
+/// Returns a mesh with vertices x (m). The normal of a vertex is the mean of the normals of the triangles
+/// around it, weighted by their angles there.
 TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::Matrix3Xd x);
 
 /// Returns the volume enclosed by a closed mesh, m^3.

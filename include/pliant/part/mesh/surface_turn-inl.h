@@ -1,4 +1,4 @@
-// Implementation of surface_turn.h.
+// Function bodies of surface_turn.h.
 #pragma once
 
 #include <algorithm>

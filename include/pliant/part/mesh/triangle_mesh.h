@@ -10,8 +10,8 @@ namespace pliant {
 struct TriangleMesh {
   Eigen::Matrix3Xd x;          ///< vertices, m
   Eigen::Matrix3Xd normals;    ///< unit normals
-  Eigen::Matrix3Xi triangles;  ///< columns of x, one triple a triangle
-  Eigen::Matrix3Xi corners;    ///< columns of normals, one triple a triangle
+  Eigen::Matrix3Xi triangles;  ///< for each triangle the columns of x of its corners
+  Eigen::Matrix3Xi corners;    ///< for each triangle the columns of normals of its corners
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Reading a whole text file, with messages that explain faults of the file system.
+// Reads a whole text file. The messages of errors explain the fault of the file system.
 #pragma once
 
 #include <cstddef>
