@@ -1,4 +1,5 @@
-// Opens a graphics library before drawing, to report a missing one.
+// Drawing the frames of a run. A graphics context is opened before drawing, so that a missing graphics
+// library is reported with its own exit code.
 #include "draw_frames.h"
 
 #include <stdexcept>

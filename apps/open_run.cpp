@@ -1,4 +1,5 @@
-// Reads the record, the scene and the recording of a run, and checks that they belong together.
+// Reads the record (run.json), the scene and the recording (tables of states) of a run, and checks that they
+// belong together.
 #include "open_run.h"
 
 #include <pliant/io/format/number_text.h>

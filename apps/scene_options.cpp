@@ -15,9 +15,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->required()
       ->type_name("SCENE");
   command
-      .add_option(
-          "--set", options.overrides,
-          "Set a value of the scene by its JSON pointer, as /parts/0/density=500; may be given several times")
+      .add_option("--set", options.overrides,
+                  "Set a value of the scene by its JSON pointer, for example /parts/0/density=500; may be "
+                  "given several times")
       ->type_name("/POINTER=VALUE")
       ->take_all()
       ->allow_extra_args(false);

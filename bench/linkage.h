@@ -1,5 +1,5 @@
-// Linkages for benches: rigid or deformable links connected by ball joints, in SI units, with gravity along
-// -z.
+// Linkages for benchmarks: rigid or deformable links connected by ball joints, in SI units, with gravity
+// along -z.
 #pragma once
 
 #include <cmath>

@@ -25,8 +25,8 @@ class SmoothMotion {
   VecX<double> v() const { return y_.tail(y_.size() - n_q_); }
   /// Advances from time t to t + h.
   void step(double t, double h) {
-    // The change within a step is computed separately from y, so that the rounding of y does not affect it.
-    // The sum is Kahan's compensated sum.
+    // The change of y within a step is computed separately from y, so that the rounding of y does not affect
+    // it. It is added to y by Kahan's compensated summation.
     const VecX<double> compensated = change(t, h) + compensation_;
     const VecX<double> sum = y_ + compensated;
     compensation_ = compensated - (sum - y_);
@@ -34,8 +34,10 @@ class SmoothMotion {
   }
 
  protected:
+  /// Returns y(t + h) - y(t).
   virtual VecX<double> change(double t, double h) = 0;
   const VecX<double>& y() const { return y_; }
+  /// Returns y_dot at (t, y).
   VecX<double> rates(double t, const VecX<double>& y) {
     q_ = y.head(n_q_);
     v_ = y.tail(y.size() - n_q_);
@@ -125,9 +127,9 @@ class Collocation final : public SmoothMotion {
       if (!(change_norm < smallest_change)) break;
       smallest_change = change_norm;
     }
-    // A diverging iteration gives no solution. The threshold is not smaller because four-bars, near its
-    // singular positions, does not converge to 1e-8. The comparison with the other method shows the accuracy
-    // of a solution.
+    // If the iteration diverges, there is no solution. The threshold is large because the iteration does not
+    // converge to 1e-8 for the problem "four-bars" (problems.h) near its singular positions. The accuracy of
+    // a solution is known from its comparison with that of the other method.
     if (!(smallest_change <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }

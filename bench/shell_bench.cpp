@@ -4,7 +4,7 @@
 // speeds, both measured in this run: the multiply-add peak of this machine, and the bandwidth of a triad
 // over as many bytes (in the same cache).
 //
-//   shell_bench [FOLDER]     writes shell_bench.csv to FOLDER as well
+//   shell_bench [FOLDER]     also writes shell_bench.csv to FOLDER
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   char head[256];
   const double peak = bench::multiply_add_peak();
   std::snprintf(head, sizeof head,
-                "# one thread: %.2f 1e9 multiply-adds/s\n"
+                "# peak of one thread: %.2f 1e9 multiply-adds/s\n"
                 "energy,triangles,threads,ns_per_triangle,multiply_adds,bytes,triad_gb_per_s,part_of_peak,"
                 "part_of_bandwidth\n",
                 peak * 1e-9);

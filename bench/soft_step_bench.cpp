@@ -3,7 +3,7 @@
 // Euler (one), at half the largest stable step. Each time is the minimum of four rounds. The last column is
 // the time per evaluation / time of the kernel. Writes CSV to standard output.
 //
-//   soft_step_bench [FOLDER]     writes soft_step_bench.csv to FOLDER as well
+//   soft_step_bench [FOLDER]     also writes soft_step_bench.csv to FOLDER
 #include <algorithm>
 #include <cstdio>
 #include <exception>

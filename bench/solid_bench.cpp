@@ -5,7 +5,7 @@
 // coordinates and forces once for each node. The bandwidth is that of a triad over as many bytes, in the same
 // cache.
 //
-//   solid_bench [FOLDER]     writes solid_bench.csv to FOLDER as well
+//   solid_bench [FOLDER]     also writes solid_bench.csv to FOLDER
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -115,8 +115,8 @@ void measure_law(const char* name, const Mesh& mesh, const Machine& machine, ben
 template <class Element>
 void measure_all(const Mesh& mesh, const Machine& machine, bench::TableFile& file) {
   measure_law<Element, LinearLaw>("linear", mesh, machine, file);
-  // In addition to the linear energy: the volume change of an element and the forces of its mean dilatation,
-  // 6 and 3 operations per corner.
+  // Operations added to those of the linear energy: 6 per node of an element for its volume change, and 3 per
+  // node for the forces of its mean dilatation.
   constexpr long N = Element::n_nodes;
   const AveragedLinearSolid<Element> averaged(mesh.rest, mesh.elements, kMaterial);
   measure({"averaged_linear", N, operations<Element, LinearLaw>() + 9 * N,
@@ -134,8 +134,8 @@ int main(int argc, char** argv) {
     const Machine machine{bench::multiply_add_peak()};
     char head[512];
     std::snprintf(head, sizeof head,
-                  "# one core: %.2f 1e9 multiply-adds/s; shares: of the peak of the cores in use, of the "
-                  "bandwidth of one triad\n"
+                  "# peak of one core: %.2f 1e9 multiply-adds/s; share_of_peak: of the peak of all cores in "
+                  "use; share_of_bandwidth: of the triad bandwidth of one core\n"
                   "law,element_nodes,elements,nodes,threads,ns_per_element,operations,bytes,gflops,gb_per_s,"
                   "triad_gb_per_s,share_of_peak,share_of_bandwidth\n",
                   machine.multiply_adds * 1e-9);

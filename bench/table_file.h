@@ -1,4 +1,4 @@
-// A CSV file that a bench writes row by row, and a reader for it. Without a path no file is written.
+// A CSV file that a benchmark writes row by row, and a reader for it. Without a path no file is written.
 #pragma once
 
 #include <cstdio>

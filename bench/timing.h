@@ -1,5 +1,5 @@
-// Timing for benches: the minimum time of several repeats, and calibration kernels measured in the same run,
-// so that results can be given as ratios that are comparable between machines.
+// Timing for benchmarks: the minimum time of several repeats, and calibration kernels measured in the same
+// run, so that results can be given as ratios that are comparable between machines.
 #pragma once
 
 #include <algorithm>

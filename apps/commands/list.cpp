@@ -82,7 +82,7 @@ void list_integrators() {
 }
 
 void list_functions() {
-  std::cout << "Formulas of time, as \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
+  std::cout << "Formulas of time, for example \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
   for (const pliant::Formula::Function& function : pliant::Formula::functions())
     std::cout << "  " << std::left << std::setw(8) << function.name << " " << function.meaning << "\n";
 }

@@ -13,7 +13,7 @@ void add_schema(CLI::App& app, Action& action) {
   command->footer(
       "Example:\n"
       "  pliant schema > pliant-scene.schema.json\n"
-      "Editors complete and check a scene that begins with  \"$schema\": \"pliant-scene.schema.json\".");
+      "Editors complete and check a scene that begins with \"$schema\": \"pliant-scene.schema.json\".");
   command->callback([&action] {
     action = [] {
       std::cout << pliant::schema::schema_json(pliant::scene_record());

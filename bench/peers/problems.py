@@ -45,7 +45,7 @@ class Problem:
     def tree(self):
         """Returns the joints of a spanning tree of minimum depth with the world as root, and the loop-closing joints.
 
-        A joint of the tree is (parent, its point, child, its point). Joints of a subtree are consecutive. A free
+        A joint of the tree is (parent, point of the parent, child, point of the child). Joints of a subtree are consecutive. A free
         body has no joint.
         """
         joints_at = {}

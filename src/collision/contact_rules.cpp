@@ -1,4 +1,4 @@
-// Resolution of the names in ContactSettings to the rule of each pair.
+// Finds the rule of each pair of things from the names in ContactSettings.
 #include <pliant/collision/contact_rules.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ ContactRules::ContactRules(const Model& model)
   auto number = [&](const std::string& name, const char* what) {
     const auto found = numbers.find(name);
     if (found == numbers.end())
-      throw std::invalid_argument("contact: '" + name + "' is named, but there is no " + what +
+      throw std::invalid_argument("contact: a pair or a group names '" + name + "', but there is no " + what +
                                   " with this name");
     return found->second;
   };

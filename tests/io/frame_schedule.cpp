@@ -35,7 +35,7 @@ TEST_CASE("N28: steps fill the run, and the last step ends at the end of the run
   CHECK(none.records(0));
 }
 
-TEST_CASE("I33, N24: impossible runs are refused with the reason") {
+TEST_CASE("I33, N24: a run that is impossible is refused, and the message gives the reason") {
   const double nan = std::nan("");
   for (const double bad : {0.0, -1.0, nan, HUGE_VAL}) {
     CHECK_THROWS_AS(FrameSchedule(1, bad, 25), std::invalid_argument);

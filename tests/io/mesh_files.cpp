@@ -61,7 +61,7 @@ ReadObj read_obj(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an OBJ file reads back exactly") {
+TEST_CASE("an OBJ file contains the exact coordinates") {
   const auto scene = pulled_scene();
   Simulation simulation(scene->body);
   for (int i = 0; i < 20; ++i) simulation.step(1e-3);
@@ -110,7 +110,7 @@ TEST_CASE("the transformed mesh of a rigid part equals a new evaluation of its s
   }
 }
 
-TEST_CASE("a PLY file has the size and the numbers of its header") {
+TEST_CASE("a PLY file has the size and the numbers of elements that its header states") {
   const auto scene = pulled_scene();
   const Simulation simulation(scene->body);
   FrameMeshes frame(*scene, simulation.model());

@@ -27,7 +27,7 @@ void append_rows(NpyWriter& writer, int columns, int from, int to) {
 
 }  // namespace
 
-TEST_CASE("a table reads back bit for bit") {
+TEST_CASE("a table that is written and read again is the same bit for bit") {
   const NewFolder folder;
   for (const int columns : {kNpyVector, 0, 1, 7}) {
     const fs::path file = folder / ("t" + std::to_string(columns) + ".npy");
@@ -55,7 +55,7 @@ TEST_CASE("a table reads back bit for bit") {
   }
 }
 
-TEST_CASE("the header is that of NumPy") {
+TEST_CASE("the header has the format of NumPy") {
   const NewFolder folder;
   {
     NpyWriter writer = NpyWriter::create(folder / "q.npy", 3);
@@ -78,7 +78,7 @@ TEST_CASE("I53: rows that were not flushed, and partial rows, are ignored") {
   append_rows(writer, 2, 5, 9);
   CHECK(NpyReader(file).rows() == 5);
   const std::string whole = bytes_of(file);
-  // The writer was killed between the rows and the header that counts them.
+  // As if the writer had been killed after it wrote rows and before it updated their number in the header.
   set_bytes(file, whole + std::string(100, 'x'));
   CHECK(NpyReader(file).rows() == 5);
   for (std::size_t cut = 128; cut <= whole.size(); ++cut) {
@@ -137,7 +137,7 @@ TEST_CASE("I55: damaged headers are refused") {
   CHECK_THROWS_AS(NpyReader(folder / "absent.npy"), std::system_error);
 }
 
-TEST_CASE("I50: a table is never written over a file or through a link") {
+TEST_CASE("I50: a new table does not overwrite an existing file or the target of a link") {
   const NewFolder folder;
   set_bytes(folder / "precious", "data");
   fs::create_symlink(folder / "precious", folder / "t.npy");
@@ -146,7 +146,7 @@ TEST_CASE("I50: a table is never written over a file or through a link") {
   CHECK(bytes_of(folder / "precious") == "data");
 }
 
-TEST_CASE("I51: a full disk is an error at once") {
+TEST_CASE("I51: a full disk is reported when the file is created") {
   if (!fs::exists("/dev/full")) return;
   const NewFolder folder;
   fs::create_symlink("/dev/full", folder / "full");
@@ -154,7 +154,7 @@ TEST_CASE("I51: a full disk is an error at once") {
   CHECK_THROWS_AS(WholeFile("/dev/full/file"), std::system_error);
 }
 
-TEST_CASE("a new file replaces a link, and an abandoned file leaves nothing") {
+TEST_CASE("a new file replaces a link, and an abandoned file is removed") {
   const NewFolder folder;
   set_bytes(folder / "precious", "data");
   fs::create_symlink(folder / "precious", folder / "out.txt");

@@ -220,7 +220,7 @@ TEST_CASE("N67: a stiff shell, whose steps depend on its reused factors, also gi
   CHECK(results_of(folder / "broken") == results_of(folder / "unbroken"));
 }
 
-TEST_CASE("N57: a joint that pulls a part into a plane is named with both") {
+TEST_CASE("N57: if a joint pulls a part into a plane, run.json names the joint, the part and the plane") {
   Scene scene;
   scene.name = "conflict";
   scene.end = 0.6;

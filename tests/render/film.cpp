@@ -99,7 +99,7 @@ TEST_CASE("the scene's settings of camera, light and ground are used") {
   CHECK(filmed.film().camera().target == Eigen::Vector3d(0, 0, 1));
 }
 
-TEST_CASE("springs are lines between their points, with a dot at world points") {
+TEST_CASE("a spring is drawn as a line between its points, with a dot at a point of the world") {
   const FilmedRun filmed;
   Film film = filmed.film();
   const Picture& picture = film.at(0.1);
@@ -127,7 +127,7 @@ TEST_CASE("the camera includes the world points of springs, unless they are far 
   CHECK(equal(filmed.film().camera(), without_springs));
 }
 
-TEST_CASE("deforming parts are coloured on one scale in all frames") {
+TEST_CASE("deforming parts have one colour scale in all frames") {
   const FilmedRun filmed;
   filmed.scene->coloring = Coloring{SurfaceQuantity::displacement, {}, {}};
   Film film = filmed.film(), later = filmed.film();
@@ -162,7 +162,7 @@ TEST_CASE("deforming parts are coloured on one scale in all frames") {
   CHECK_FALSE(filmed.film().at(0.1).scale);  // no part is coloured
 }
 
-TEST_CASE("a plane is visible at its position while it is active, if it is shown") {
+TEST_CASE("the picture of a plane is at the position of the plane while the plane is active") {
   FilmedRun filmed;
   Scene& scene = *filmed.scene;
   scene.width = 160;
@@ -187,7 +187,7 @@ TEST_CASE("a plane is visible at its position while it is active, if it is shown
     scene.planes.push_back({0, 0.8, 0.6, {1, 0, 0}});
     const Image with = seen(time);
     const Camera camera = filmed.film().camera();
-    Eigen::AlignedBox2d around;  // the image of the rectangle, with a margin of one pixel
+    Eigen::AlignedBox2d around;  // the picture of the rectangle, with a margin of one pixel
     for (const double x : {-0.4, 0.4})
       for (const double z : {-0.3, 0.3})
         around.extend(test::pixel_of({1 - 10 * time + x, -1, 1.5 + z}, camera, scene.width, scene.height));

@@ -1,5 +1,5 @@
-// Advancing coordinates along velocities: positions and parameters add, rotations turn by the exponential
-// map.
+// Advances coordinates along velocities. The increments of positions and parameters are added; rotations are
+// multiplied by the exponential map of their increment.
 #pragma once
 
 #include <pliant/body/constraint/group.h>
@@ -9,14 +9,14 @@ namespace pliant {
 /// q <- q (+) h v for all parts; h: s. c, q_s and q_d add, theta <- theta o exp(h omega / 2).
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
-/// q <- q (+) h v for the frame and the global parameters of one part; v: (c_dot, omega, q_s_dot) of the
-/// part.
+/// Computes q <- q (+) h v for the frame and the global parameters of one part. v: (c_dot, omega, q_s_dot) of
+/// the part.
 void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const VecX<double>>& v, double h);
 
-/// q <- q (+) h v for all coordinates of one part; v: velocities of all parts.
+/// Computes q <- q (+) h v for all coordinates of one part. v: velocities of all parts.
 void advance_whole_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h);
 
-/// The entries (c_dot, omega, q_s_dot) of a part in the velocities v of all parts.
+/// Returns the entries (c_dot, omega, q_s_dot) of a part in the velocities v of all parts.
 inline auto share_of(const PartModel& m, VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
@@ -24,8 +24,8 @@ inline auto share_of(const PartModel& m, const VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
 
-/// Returns v_r = (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot); w must contain its
-/// frame.
+/// Returns v_r = (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot). w must contain the
+/// rotation R of the part.
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v);
 /// Returns (c_dot, omega, q_s_dot) of a part from v_r = (R^T c_dot, omega, q_s_dot).
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
@@ -35,7 +35,8 @@ VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<c
 /// its velocities in x.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
-/// q <- q (+) h x for one part, with its velocities x in a group.
+/// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by the response to
+/// impulses, as in scatter_velocity().
 void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& x,
                   double h, VecX<double>& q);
 

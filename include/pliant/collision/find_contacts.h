@@ -41,7 +41,7 @@ class ContactFinder {
   /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
   /// one.
   static constexpr double kMaxTravelShare = 0.4;
-  /// The surroundings of a step: whether something can touch during it, and how long it may be.
+  /// Result of the search before a step: whether anything can touch during the step, and its largest length.
   struct Neighbourhood {
     bool empty = true;  ///< nothing can touch during the step
     bool soft = false;  ///< parts that deform locally may touch something
@@ -50,8 +50,9 @@ class ContactFinder {
     double spare = 0;
 
     /// Reduces h if two sides move relative to each other by more than max_travel (m) in a step of `whole`
-    /// seconds. travel: their motion at the velocities of the start, m; change: what the change of these
-    /// velocities adds, m. done: the step is already done, and a small excess is tolerated.
+    /// seconds. travel: their motion at the velocities of the start, m; change: the additional motion by
+    /// the change of these velocities, m. done: whether the step is already done; a small excess is tolerated
+    /// then.
     void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
   /// Returns the neighbourhood of a coming step from time t (s) of h seconds. reach: the displacement by a

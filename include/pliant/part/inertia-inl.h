@@ -1,7 +1,7 @@
 // The sums of Eq. (11) over the mass points of a part:
 //   M = sum m G^T G            MassPointSums::add_mass()
 //   g_q = -sum m G^T b         MassPointSums::add_inertial_force()
-// with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J qs_dot) + Jdot qs_dot (inertia.h), and
+// with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot (inertia.h), and
 // the jets of single material points.
 #pragma once
 

@@ -27,7 +27,7 @@ class PartEvaluation : public PartDescription {
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes g_q alone, of a rigid part. The other fields of out stay as evaluate_inertia() left them.
+  /// Computes only g_q, for a rigid part. The other fields of out keep the values from evaluate_inertia().
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
   /// Computes position, J and rates of material points in the body frame. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
@@ -66,7 +66,8 @@ class PartEvaluation : public PartDescription {
 
   // The kernels, for batches of material points. Primitive implements them.
 
-  /// Computes position, J and rates of material points, up to the level of the batch.
+  /// Computes s, and as batch.level requires J, J q_s_dot and Jdot q_s_dot, of material points
+  /// (deform/jet.h).
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
   /// Computes these jets with their derivatives along the dual parts of the values and of the material

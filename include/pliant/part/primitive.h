@@ -31,7 +31,8 @@ class Primitive final : public Part {
       : Part(std::move(name), density, std::make_unique<ShapeFaceOf<Shape>>(), chain.links()),
         chain_(std::move(chain)) {}
 
-  /// Evaluates s, J and rates of a batch of material points at given values of all parameters.
+  /// Evaluates s, J, J q_s_dot and Jdot q_s_dot of a batch of material points at given values of all
+  /// parameters.
   void jets(const ParameterValues<double>& values, const Material<Pack>* at,
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);

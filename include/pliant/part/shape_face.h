@@ -33,7 +33,7 @@ class ShapeFace {
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the gradient of the gauge, 1/m. It points along the outward normal.
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point at x.
+  /// Returns the material point (u, v, w) with e(u, v, w) = x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point of the surface for a mesh vertex. g: direction of the vertex, or for a
   /// torus (angle around the tube, angle around z, 0), rad.

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Computes mass matrix and inertial forces of a part over the given points instead of those of the part. The
-/// arguments are those of Part::evaluate_inertia(), after part and points.
+/// Computes mass matrix and inertial forces of a part over the given points instead of the mass points of the
+/// part. The other arguments are those of Part::evaluate_inertia().
 void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
                  const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
                  Counters& counters);

@@ -1,4 +1,4 @@
-// Reading triangle meshes of obstacles from files: OBJ, PLY, STL, glTF.
+// Reads triangle meshes of obstacles from files: OBJ, PLY, STL, glTF.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,10 @@
 
 namespace pliant {
 
-/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have one position.
+/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have the same
+/// position.
 struct MeshFile {
-  Eigen::Matrix3Xd vertices;   ///< in the units of the file, single precision
+  Eigen::Matrix3Xd vertices;   ///< in the units of the file, rounded to single precision
   Eigen::Matrix3Xi triangles;  ///< three column numbers of `vertices` per triangle
 };
 

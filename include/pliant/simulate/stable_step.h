@@ -9,7 +9,7 @@ namespace pliant {
 
 struct StableStep {
   double step;            ///< see largest_stable_step(), s
-  std::string limit;      ///< the cause, as "the local elasticity of part 'jelly'"; empty: there is none
+  std::string limit;      ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
   std::string uncounted;  ///< causes that are not included and may give a smaller step; empty: none
 };
 StableStep stable_step(const Simulation& simulation);

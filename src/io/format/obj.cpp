@@ -1,4 +1,5 @@
-// OBJ text is written line by line into a block that stays in the cache, and from there to a file or string.
+// Writes OBJ text line by line into a block that fits into the cache, and each full block to a file or a
+// string.
 #include <pliant/io/format/obj.h>
 
 #include <algorithm>
@@ -70,7 +71,8 @@ char* put_unit(char* at, double x) {
   return at + 6;
 }
 
-// Returns the name of a group; in OBJ files a name ends at a blank, so blanks are replaced.
+// Returns a name that is valid for a group in an OBJ file. White space, control characters, '#' and
+// backslashes would end or change the name, so each becomes '_'.
 std::string group_name(const std::string& name) {
   std::string group = name;
   for (char& c : group)
@@ -78,7 +80,8 @@ std::string group_name(const std::string& name) {
   return group;
 }
 
-// Writes the lines of one mesh. vertex, normal: numbers of its first vertex and normal, counted from 1.
+// Writes the lines of one mesh. vertex, normal: numbers of its first vertex and its first normal in the file;
+// OBJ counts from 1.
 void add_mesh(Block& block, const TriangleMesh& mesh, std::int64_t vertex, std::int64_t normal) {
   for (Eigen::Index i = 0; i < mesh.x.cols(); ++i) {
     char* at = block.line();

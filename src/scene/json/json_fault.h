@@ -1,4 +1,4 @@
-// Messages for a text that is not JSON: the fault and its correction.
+// Messages for a text that is not valid JSON. A message names the fault and its correction.
 #pragma once
 
 #include <cstddef>
@@ -28,11 +28,11 @@ struct Progress {
   std::function<std::string(std::size_t)> place;  ///< converts an offset to words, "line 3, column 5"
 };
 
-/// Returns the fault at which the parser stopped; its pointer is empty.
+/// Returns the fault at which the parser stopped. Its JSON Pointer is empty.
 Fault explain(const Progress& progress);
 
-/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16),
-/// and sets *fault.
+/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16).
+/// If so, stores the fault in *fault.
 bool is_foreign(std::string_view text, Fault* fault);
 
 }  // namespace pliant::json

@@ -1,4 +1,4 @@
-// The augmented matrix of Eq. (14): its pattern, its values, its solution with iterative refinement, and the
+// The augmented matrix of Eq. (14): its pattern, its values, the solution with iterative refinement, and the
 // rank of C_q.
 #pragma once
 
@@ -16,16 +16,18 @@ namespace pliant {
 
 namespace detail {
 
-/// d relative to the diagonal entry of W_c.
+/// Entry of d in a row, relative to the diagonal entry of W_c in this row.
 inline constexpr double kRegularisation = 1e-9;
-/// A row of unit length depends on the rows before it if its distance from their span is smaller.
+/// A row of unit length counts as dependent on the rows before it if its distance from their span is below
+/// this number.
 inline constexpr double kDependentRow = 3e-5;
-/// Largest number of refinements, and number of refinements without improvement after which they end.
+/// Largest number of refinements, and number of successive refinements without improvement that ends the
+/// iteration.
 inline constexpr int kMaxRefinements = 12, kMaxStalledRefinements = 3;
-/// Residual, relative to the right-hand side, at which refinement ends at once; and the ratio of two
-/// residuals above which a refinement did not improve.
+/// Residual, relative to the right-hand side, at which refinement ends; and the ratio of successive residuals
+/// above which a refinement is no improvement.
 inline constexpr double kRefinedResidual = 1e-16, kStalledRatio = 0.5;
-/// Residual, relative to the right-hand side, that is accepted if a refinement did not improve it.
+/// Residual, relative to the right-hand side, that is accepted after a refinement without improvement.
 inline constexpr double kRoundingResidual = 1e-13;
 
 }  // namespace detail
@@ -57,7 +59,7 @@ PLIANT_INLINE AugmentedFactor::AugmentedFactor(const Model& model, const Island&
 
 PLIANT_INLINE void AugmentedFactor::factor(const std::vector<PartWorkspace<double>>& parts,
                                            const ConstraintWorkspace<double>& work, bool closed_only) {
-  double* value = K_.valuePtr();  // in the order of the pattern, see the constructor
+  double* value = K_.valuePtr();  // values are in the order of the entries in the constructor
   for (std::size_t p = 0; p < island_->parts.size(); ++p) {
     const PartWorkspace<double>& w = parts[at(island_->parts[p])];
     const int n = static_cast<int>(w.inertia.M.rows());
@@ -104,7 +106,7 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
     more = left;
     factor_->solve(more);
     z += more;
-    // The residual of the matrix without d.
+    // The residual of Eq. (14) itself, where d is zero.
     left = b - K_.selfadjointView<Eigen::Lower>() * z;
     left.tail(rows) += K_.diagonal().tail(rows).cwiseProduct(z.tail(rows));
     const double now = left.tail(rows).lpNorm<Eigen::Infinity>();

@@ -1,9 +1,9 @@
 // The augmented matrix of Eq. (14) for the joints of an island,
 //   [ M    C_q^T ]
-//   [ C_q   -d I ]
-// It is sparse. A small d makes it quasi-definite, so that dependent rows of C_q do no harm; iterative
-// refinement removes the error of d for all other rows. The result is W_c^-1 for W_c = C_q M^-1 C_q^T, whose
-// blocks are never formed.
+//   [ C_q   -d   ]      d: diagonal, small and positive
+// It is sparse. The entries of d make the matrix quasi-definite, so that it can be factored although rows of
+// C_q depend on each other. Iterative refinement removes the error that d causes in all independent rows. The
+// factor solves systems with W_c = C_q M^-1 C_q^T without forming W_c.
 #pragma once
 
 #include <memory>
@@ -24,17 +24,17 @@ class AugmentedFactor {
  public:
   AugmentedFactor(const Model& model, const Island& island);
 
-  /// Factors the matrix for the joints that act, or for the closed ones only. C_q and M^-1 C_q^T must be in
-  /// work.
+  /// Factors the matrix for the joints in mode closing or closed (JointMode, body/state.h), or for the closed
+  /// ones only. `work` must contain C_q and M^-1 C_q^T of these joints.
   void factor(const std::vector<PartWorkspace<double>>& parts, const ConstraintWorkspace<double>& work,
               bool closed_only);
-  /// x = W_c^-1 x; NaN if the factorisation failed.
+  /// Replaces x by W_c^-1 x, or by NaN if the factorisation failed.
   void solve(VecX<double>& x) const;
 
  private:
   const Model* model_;
   const Island* island_;
-  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< of each part: joint, its side
+  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< [part of the island]: (joint, its side)
   SparseMatrix K_;
   std::unique_ptr<SparseFactor> factor_;
   bool sound_ = false;
@@ -42,8 +42,9 @@ class AugmentedFactor {
 
 /// Largest number of rows of an island for dependent_rows().
 inline constexpr int kMaxRankRows = 900;
-/// Returns which rows of C_q of an island depend on others, by a sparse QR factorisation. It serves messages,
-/// not steps. In islands of more than kMaxRankRows rows, no row is reported.
+/// Returns which rows of C_q of an island depend linearly on others, by a sparse QR factorisation. Messages
+/// use the result; a step does not call this function. For an island of more than kMaxRankRows rows, all
+/// entries are false.
 std::vector<bool> dependent_rows(const Model& model, const Island& island,
                                  const ConstraintWorkspace<double>& work);
 

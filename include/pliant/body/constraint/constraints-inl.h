@@ -145,7 +145,7 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls PlacePart for the parts of an island in their order, each as late as its joints allow.
+/// Calls PlacePart for the parts of an island in their order, each just before the first joint that needs it.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const PlacePart& place) : island_(island), place_(place) {

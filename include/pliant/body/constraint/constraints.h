@@ -2,7 +2,7 @@
 //   W_c lambda = -(C_q a + bias + 2 alpha C_dot + beta^2 C),   W_c = C_q M^-1 C_q^T,
 // where a are the accelerations without joints, and bias = -gamma of Eq. (13). The accelerations with joints
 // are a + M^-1 C_q^T lambda. The sign of lambda is opposite to the paper's: the force on the parts is +C_q^T
-// lambda.
+// lambda. A joint "acts" (exerts forces) if its JointMode is closing or closed.
 #pragma once
 
 #include <functional>
@@ -28,8 +28,8 @@ struct OneSidedRow {
   int k;
   double sign;  ///< 1 at a lower limit and for a string, -1 at an upper limit
   double bound;
-  /// The row may miss its bound by this share of the effect of its own push, so that contradicting rows have
-  /// a solution.
+  /// Compliance of the row: it may miss its bound by this fraction of the change that its own push causes.
+  /// Rows that contradict each other have a solution then.
   double softness = 0;
 };
 
@@ -51,10 +51,10 @@ class JointFactor {
   /// constant. Its result is exact only after a second solution for the residual; exact() is false then.
   void solve(VecX<S>& x) const;
   bool exact() const { return values_ == nullptr; }
-  /// Returns which rows depend on others.
+  /// Returns which rows depend linearly on others.
   std::vector<bool> dependent(const Model& model, const Island& island,
                               const ConstraintWorkspace<S>& work) const;
-  /// Whether solutions need refinement.
+  /// Returns whether solutions need iterative refinement.
   bool is_rough() const;
 
  private:
@@ -143,18 +143,19 @@ VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>
 /// rounding, unless rows of the joint depend on rows that contradict them.
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
-/// Returns the rates of the works of the joints, W.
+/// Returns the power of each kind of work (enum Work) that joints do, W.
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 
 /// Returns for each joint the number of its rows that depend on rows of other joints, after an evaluation.
 std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work);
 
-/// Whether a joint with this mode acts.
+/// Returns whether a joint with this mode acts (exerts forces).
 inline bool acts(JointMode mode) {
   return mode == JointMode::closing || mode == JointMode::closed;
 }
-/// Whether a factor contains a joint with this mode: a closed one if closed_only, or else one that acts.
+/// Returns whether a factor contains a joint with this mode: only closed joints if closed_only, else all
+/// joints that act.
 inline bool is_selected(JointMode mode, bool closed_only) {
   return closed_only ? mode == JointMode::closed : acts(mode);
 }

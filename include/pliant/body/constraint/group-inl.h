@@ -1,4 +1,4 @@
-// The body of gather_velocity().
+// Function body of gather_velocity().
 #pragma once
 
 #include <pliant/body/constraint/group.h>

@@ -22,11 +22,11 @@ class Group {
   using Vector = VecMax<S, Max>;
   static constexpr int kMax = Max;
 
-  /// The group of one part without joints.
+  /// Makes the group of one part without joints.
   Group(const Model& model, Workspace<S>& work, int part)
       : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
-  /// The group of an island. closed_only: pushes and corrections keep the closed joints closed, and may open
-  /// the joints that are still closing; otherwise they respect all joints that act.
+  /// Makes the group of an island. closed_only: pushes and corrections keep the closed joints closed, and may
+  /// open the joints that are still closing; otherwise they respect all joints that act.
   Group(const Model& model, Workspace<S>& work, const Island& island, bool closed_only)
       : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
     closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
@@ -51,7 +51,7 @@ class Group {
     x.resize(size_);
     for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = velocities_of(i);
   }
-  /// The entries of part i in x.
+  /// Returns the entries of part i in x.
   auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
   auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
 
@@ -66,7 +66,7 @@ class Group {
     }
     return sum * S(row.sign);
   }
-  /// Returns the change of x by a unit push of a row, without joints.
+  /// Returns the change of x that a unit force (or impulse) on a row causes if the joints exert no forces.
   Vector push(const OneSidedRow& row) const {
     Vector x = Vector::Constant(size_, S(0.0));
     if (row.part >= 0) {
@@ -82,7 +82,7 @@ class Group {
     }
     return x;
   }
-  /// Returns the change of x by a unit push of a row, with joints.
+  /// Returns the change of x that a unit force (or impulse) on a row causes while the joints act.
   Vector response(const OneSidedRow& row) const {
     Vector x = push(row);
     if (island_ == nullptr) return x;
@@ -105,13 +105,13 @@ class Group {
         for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
     });
   }
-  /// Whether a result of correct() needs refinement.
+  /// Returns whether a result of correct() needs iterative refinement.
   bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
   /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with
   /// W_c lambda = -rows. Returns lambda, which the next call overwrites. W_c may be that of an earlier
   /// configuration; lambda is approximate then, but the forces act along the present C_q^T, so that the two
-  /// ends of a joint get opposite forces. as_factored: nothing was evaluated since the factorisation, and
-  /// M^-1 C_q^T in the workspace is valid.
+  /// ends of a joint get opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
+  /// the factorisation.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const {
     const JointFactor<S>& factor = this->factor();
     GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];

@@ -53,7 +53,7 @@ class OneSidedRows {
     return n_ > before;
   }
 
-  /// Returns x with the pushes of the rows.
+  /// Computes the pushes that satisfy the rows added so far. Returns x with these pushes.
   Vector meet(const Vector& x) {
     const auto n = static_cast<Eigen::Index>(n_);
     MatMax<double, kMaxRows> W(n, n);
@@ -72,7 +72,8 @@ class OneSidedRows {
     for (std::size_t i = 0; i < n_; ++i) {
       const OneSidedRow& row = rows_[i];
       if (!pushed(i)) continue;
-      if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // exact
+      if (row.part >= 0)
+        after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // without rounding errors
     }
     return after;
   }

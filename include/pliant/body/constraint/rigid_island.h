@@ -1,8 +1,9 @@
 // Rigid islands: rigid parts on ball joints. A method of integration needs only their accelerations, which
 // this file computes for four parts at a time, without the frames, points and rows of the general evaluation.
 //
-// Let r lead from the centre of mass to the point of a joint, and let I^-1 = L L^T be the inverse inertia
-// about the centre of mass, body frame. A force f at point j of a part accelerates point i of the part by
+// Let r be the vector from the centre of mass to the point of a joint, and let I^-1 = L L^T be the inverse
+// inertia about the centre of mass, body frame. A force f at point j of a part accelerates point i of the
+// part by
 //   (1/m + B_i B_j^T) f,   B = R [r]x L.
 // These 3 x 3 blocks make W_c = C_q M^-1 C_q^T of Eq. (14); neither C_q nor M is formed.
 #pragma once
@@ -43,7 +44,7 @@ struct RigidWorkspace {
   };
   bool used = false;      ///< whether the last evaluation used the rigid island
   bool prepared = false;  ///< whether the constants of its parts are in their workspaces
-  Counters counters;      ///< how often its kernels ran
+  Counters counters;      ///< number of evaluations by its kernels
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts

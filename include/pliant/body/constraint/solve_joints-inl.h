@@ -18,8 +18,8 @@ namespace pliant {
 namespace detail {
 
 /// Closing joints whose rows nearly contradict each other, for instance rods that pull apart, would
-/// accelerate their parts without bound. The accelerations are limited to this multiple of those that the
-/// gaps ask for.
+/// accelerate their parts without bound. The accelerations are limited to this multiple of those that
+/// Baumgarte's terms require.
 inline constexpr double kMaxClosingRatio = 30;
 /// Softness of the rows of closing strings beyond that limit: the strings then share the load.
 inline constexpr double kClosingSoftness = 1e-3;
@@ -68,7 +68,7 @@ class IslandForces {
         joints_.lambda[model_.joints()[at(island_.strings[at(row.k)])].row] =
             lambda[static_cast<Eigen::Index>(i)];
       else
-        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // exact
+        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // zero without rounding errors
     }
   }
 

@@ -1,5 +1,5 @@
-// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it ties. The formula of a joint is
-// one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
+// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it connects. The formula of a joint
+// is one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
 //   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
 // bias is C_ddot for constant generalised velocities. It is the second derivative of C along a motion of the
 // points with velocity x_dot and acceleration L_dot v; prescribed points follow their paths. It contains C_tt

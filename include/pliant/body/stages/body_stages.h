@@ -19,7 +19,7 @@ namespace pliant::detail {
 // Before the stages: sizes, and which parts and islands each stage evaluates.
 
 /// Marks the rigid islands that this evaluation uses: awake ones whose joints are all closed and projected,
-/// if only rates are wanted.
+/// if only rates are requested.
 template <class S>
 void choose_rigid_islands(const Evaluation<S>& e) {
   const auto& rigid_islands = e.model().rigid_islands();
@@ -165,7 +165,7 @@ void set_joint_modes(const Evaluation<S>& e) {
   joints.max_speed = rule.speed * rule.rate;
 }
 
-/// Copies modes, gains and active one-sided rows of the evaluation whose derivative is wanted.
+/// Copies modes, gains and active one-sided rows of the evaluation whose derivative is computed.
 template <class S>
 void copy_joint_modes(const Evaluation<S>& e) {
   ConstraintWorkspace<S>& joints = e.work.joints;

@@ -52,7 +52,7 @@ class LoadStage {
       damping = d_dot * S(s.spring->damping);
     } else {
       const S length2 = d.dot(d);
-      if (plain(length2) == 0) return;  // no direction; a NaN passes and is found by the finite check
+      if (plain(length2) == 0) return;  // no direction; NaN passes, and the step reports it
       const S length = math::sqrt(length2);
       const Vec3<S> along = d / length;
       pull = along * S((length - s.spring->rest_length) * s.spring->stiffness);

@@ -107,7 +107,7 @@ class LocalDeformation {
   /// Computes A = M^-1 for the joints of the part: the changes of (v_r, d_dot at the points) by impulses g on
   /// (v_r, the points). points: the attachment points of the joints.
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
-  /// Adds the changes of all local rates by impulses g to d_dot.
+  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause.
   void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
                 Eigen::Ref<VecX<double>> d_dot) const;
   /// Returns M of rigid motion at the current positions: 6 x 6.

@@ -1,4 +1,4 @@
-// The laws of local deformation that scenes know, by name.
+// The elastic laws of local deformation, by the names that scenes use.
 #pragma once
 
 #include <limits>
@@ -18,7 +18,7 @@ struct LocalLawInfo {
     const char* unit;
     const char* meaning;
     double min;
-    bool above;  ///< whether min itself is excluded
+    bool above;  ///< true: values must be > min; false: >= min
     std::optional<double> fallback = {};
     double max = std::numeric_limits<double>::infinity();  ///< largest allowed value
   };

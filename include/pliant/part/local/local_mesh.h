@@ -16,7 +16,7 @@ struct LocalMesh {
   std::vector<Material<double>> nodes;
   Nodes X;                     ///< positions of the nodes at rest, body frame, m
   Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise seen from outside
-  Eigen::MatrixXi tetrahedra;  ///< 4, 10 or 15 nodes a column, see Solid; none for a shell
+  Eigen::MatrixXi tetrahedra;  ///< one element (4, 10 or 15 nodes) per column, see Solid; none for a shell
   VecX<double> mass;           ///< lumped mass of each node, kg
   double density = 0;          ///< kg/m^3 of a solid, kg/m^2 of a shell
   bool shell() const { return tetrahedra.cols() == 0; }

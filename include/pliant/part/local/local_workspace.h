@@ -18,14 +18,14 @@ class LocalResponse {
   virtual MatX<double> compliance() const = 0;
   /// Adds the change of the local rates by impulses g on (v_r, the attachment points) to d_dot.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
-  /// Replaces impulses on v_r and on all local coordinates by the changes of the rates.
+  /// Replaces impulses on v_r and on all local coordinates by the changes of the velocities that they cause.
   virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
 };
 
 struct LocalWorkspace {
   virtual ~LocalWorkspace() = default;
 
-  // Input: local coordinates and their rates, inside (q, v) of the evaluation.
+  // Input: the local coordinates and their rates. The maps refer to q and v of the evaluation.
   Eigen::Map<const VecX<double>> d{nullptr, 0}, d_dot{nullptr, 0};
 
   // Stage masses().

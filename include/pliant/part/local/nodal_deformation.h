@@ -8,8 +8,8 @@
 //   m y = F - W kappa
 //   K^T a_r = sum W^T y + 2 sum Wdot^T d_dot + sum Wddot^T d
 //   d_ddot = y - G a_r
-// with G = [I, -[p]x, J] and p = s + d. No matrix of mesh size is formed. nodal_dynamics-inl.h has the
-// stages.
+// with G = [I, -[p]x, J], p = s + d and the multipliers kappa of the conditions. No matrix of mesh size is
+// formed. nodal_dynamics-inl.h has the stages.
 #pragma once
 
 #include <optional>
@@ -25,11 +25,11 @@ namespace pliant {
 
 struct NodalWorkspace final : LocalWorkspace {
   // Stage positions().
-  VecX<double> x;      ///< positions p = s + d of the nodes, then the coordinates that an energy adds
+  VecX<double> x;      ///< p = s + d of the nodes, then the own coordinates of an energy (nodal_energy.h)
   Nodes s;             ///< reference shape
   Nodes u;             ///< velocity J q_s_dot + d_dot; empty if no parameter is dynamic, see rates_of_p()
-  MatX<double> J;      ///< 3N x n_s: columns of all nodes along x, then y, then z, for each parameter
-  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot; s2 is empty if s is linear in q_s
+  MatX<double> J;      ///< 3N x n_s: a column for each parameter; x of all N nodes, then y, then z
+  Nodes s1, s2;        ///< s1 = J q_s_dot, s2 = Jdot q_s_dot; s2 is empty if s is linear in q_s
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // Stage masses().
@@ -49,7 +49,7 @@ struct NodalWorkspace final : LocalWorkspace {
   MatX<double> kappa_of, a_of;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
-  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() keeps while it finds the frame
+  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() saves while it finds the frame
 
   /// Returns J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
@@ -119,7 +119,7 @@ class NodalDeformation final : public LocalDeformation {
   static const NodalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const NodalWorkspace&>(work);
   }
-  /// The violation of the reference conditions of rigid motion.
+  /// The violation of the six reference conditions of rigid motion.
   struct Unmet {
     Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
     Mat3<double> d_s;               ///< sum m d s^T
@@ -144,7 +144,7 @@ class NodalDeformation final : public LocalDeformation {
                          const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
   /// Computes positions and rates if s is linear in q_s.
   void linear_positions(const VecX<double>& q_s, const VecMax<double>& q_s_dot, NodalWorkspace& w) const;
-  /// Computes f and f_d of the energies with their damping.
+  /// Computes f and f_d of the workspace: the elastic forces with their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
   /// Adds beta times the viscous forces of the energies to f and f_d.
   void add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const;
