@@ -144,7 +144,8 @@ TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[conta
 TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
   constexpr double kImpact = 0.05, kLast = 12.8;  // s
   double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0;
-  VecX<double> undeformed;  // parameters and displacements of the middle balloon at the last time without contact
+  VecX<double>
+      undeformed;  // parameters and displacements of the middle balloon at the last time without contact
   const int contact_starts = run_scene("balloons", [&](Simulation& simulation) {
     const double t = simulation.time();
     const VecX<double> now = deformation(simulation, "balloon5");
