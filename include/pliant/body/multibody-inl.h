@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <pliant/body/joints/ball.h>
 #include <pliant/body/joints/joint_registry.h>
 #include <pliant/body/multibody.h>
 #include <pliant/math/header_only.h>
@@ -106,6 +107,10 @@ PLIANT_INLINE ContactObstacle& MultiBody::plate(std::string name, const Vec3<dou
   triangles << 0, 0, 1, 1, 1, 2, 0, 3, 2, 3, 3, 2;
   return obstacle(std::move(name), (orientation.normalized().toRotationMatrix() * corners).colwise() + middle,
                   triangles);
+}
+
+PLIANT_INLINE Joint& MultiBody::ball(std::string name, Point a, Point b) {
+  return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
 }
 
 PLIANT_INLINE Joint& MultiBody::hinge(std::string name, Point a, Point b, const Vec3<double>& axis) {

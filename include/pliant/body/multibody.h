@@ -12,7 +12,6 @@
 
 #include <pliant/body/constraint/stabilization.h>
 #include <pliant/body/contact_settings.h>
-#include <pliant/body/joints/ball.h>
 #include <pliant/body/joints/joint.h>
 #include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/points.h>
@@ -100,9 +99,7 @@ class MultiBody {
   }
   Joint& join(std::unique_ptr<Joint> joint);
   /// Adds the point-to-point joint: two points coincide.
-  Joint& ball(std::string name, Point a, Point b) {
-    return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
-  }
+  Joint& ball(std::string name, Point a, Point b);
   /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Rest values
   /// and placements of its parts must be set before. Throws std::invalid_argument for an invalid setting.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);

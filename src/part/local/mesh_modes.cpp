@@ -13,9 +13,9 @@
 
 #include <Spectra/SymEigsSolver.h>
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <pliant/local/solid/solid_mass.h>
+#include <pliant/math/column_basis.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/local/modal_basis.h>
 #include <pliant/part/local/mode_conditions.h>
@@ -146,10 +146,7 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
 
 /// Returns the lowest modes from all eigenvectors of K', for few coordinates.
 MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>& Q, Eigen::Index count) {
-  const Eigen::Index n = elasticity.mass.size();
-  const Eigen::HouseholderQR<MatX<double>> qr(Q);
-  const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols()),
-                     d = elasticity.mass.solve(Z);
+  const MatX<double> Z = complement_basis(Q), d = elasticity.mass.solve(Z);
   return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
 }
 
@@ -186,8 +183,7 @@ MatX<double> lowest_modes(const MeshProblem& problem, const MeshElasticity& elas
                                 std::to_string(count) + " modes; expected fewer modes");
   MatX<double> x = solver.eigenvectors();
   x -= (Q * (Q.transpose() * x)).eval();
-  const Eigen::HouseholderQR<MatX<double>> qr(x);
-  return qr.householderQ() * MatX<double>::Identity(n, count);
+  return column_basis(x);
 }
 
 void MeshProblem::check_size() const {

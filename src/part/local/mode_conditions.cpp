@@ -3,8 +3,7 @@
 
 #include <stdexcept>
 
-#include <Eigen/QR>
-
+#include <pliant/math/column_basis.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/part.h>
 
@@ -52,25 +51,19 @@ MatX<double> rest_frame(const Part& part, const ModalBasis& basis) {
 
 MatX<double> orthonormal_basis(MatX<double> A, double dependent) {
   normalise_columns(A);
-  Eigen::ColPivHouseholderQR<MatX<double>> qr(A);
-  qr.setThreshold(dependent);
-  return qr.householderQ() * MatX<double>::Identity(A.rows(), qr.rank());
+  return column_basis(A, dependent);
 }
 
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
   constexpr double dependent = 1e-9;  // relative distance below which a column of W depends on the others
-  const Eigen::Index n = basis.mass.size();
   const double mass = basis.mass[0];
   MatX<double> W = rest_frame(part, basis);
   normalise_columns(W);
-  Eigen::ColPivHouseholderQR<MatX<double>> qr(W);
-  qr.setThreshold(dependent);
-  const Eigen::Index left = 3 * n - qr.rank();
-  if (left < 1)
+  const MatX<double> Z = complement_basis(W, dependent);
+  if (Z.cols() < 1)
     throw std::invalid_argument("part '" + part.name() +
                                 "': its frame and dynamic parameters represent all displacements of its " +
                                 basis.made_of + "; expected a higher degree");
-  const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(left);
   const Eigenpairs modes = symmetric_eigenpairs(Z.transpose() * K * Z);
   basis.B = Z * modes.vectors / std::sqrt(mass);
   basis.omega2 = modes.values.cwiseMax(0) / mass;

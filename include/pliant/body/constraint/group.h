@@ -56,41 +56,11 @@ class Group {
   auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
 
   /// Returns the value that a row bounds from below.
-  S value(const OneSidedRow& row, const Vector& x) const {
-    if (row.part >= 0) return x[first(row.part) + 6 + row.k] * S(row.sign);
-    const JointModel& string = model_->joints()[at(island_->strings[at(row.k)])];
-    S sum(0.0);
-    for (const JointSide& side : string.sides) {
-      const int start = island_->first[at(side.place)];
-      for (int i = 0; i < velocities(side.part); ++i) sum += work_->joints.Cq[side.offset + i] * x[start + i];
-    }
-    return sum * S(row.sign);
-  }
+  S value(const OneSidedRow& row, const Vector& x) const;
   /// Returns the change of x that a unit force (or impulse) on a row causes if the joints exert no forces.
-  Vector push(const OneSidedRow& row) const {
-    Vector x = Vector::Constant(size_, S(0.0));
-    if (row.part >= 0) {
-      auto force = share(x, row.part);
-      force[6 + row.k] = S(row.sign);
-      workspace(row.part).solve_mass(force);
-      return x;
-    }
-    for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
-      VecMax<S, Max> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
-      workspace(side.place).solve_mass(force);
-      share(x, side.place) += force;
-    }
-    return x;
-  }
+  Vector push(const OneSidedRow& row) const;
   /// Returns the change of x that a unit force (or impulse) on a row causes while the joints act.
-  Vector response(const OneSidedRow& row) const {
-    Vector x = push(row);
-    if (island_ == nullptr) return x;
-    VecX<S> rows;
-    joint_rows(x, rows);
-    correct(rows, x);
-    return x;
-  }
+  Vector response(const OneSidedRow& row) const;
 
   /// Computes rows = C_q x of the joints of the island.
   template <class V>
@@ -112,24 +82,7 @@ class Group {
   /// configuration; lambda is approximate then, but the forces act along the present C_q^T, so that the two
   /// ends of a joint get opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
   /// the factorisation.
-  const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const {
-    const JointFactor<S>& factor = this->factor();
-    GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
-    VecX<S>&lambda = kept.correction, &change = kept.change;
-    lambda = -rows;
-    factor.solve(lambda);
-    response_to(lambda, as_factored, change);
-    if (!factor.exact()) {
-      VecX<S> more;
-      joint_rows(change, more);
-      more = -(rows + more);
-      factor.solve(more);
-      lambda += more;
-      response_to(lambda, as_factored, change);
-    }
-    x += change;
-    return lambda;
-  }
+  const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const;
 
  private:
   /// C_q^T of a ball joint on a rigid part.
@@ -150,21 +103,7 @@ class Group {
     }
   }
   /// Computes x = M^-1 C_q^T lambda.
-  void response_to(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const {
-    x.setConstant(size_, S(0.0));
-    const ConstraintWorkspace<S>& joints = work_->joints;
-    for_each_side(
-        as_factored ? joints.Y : joints.Cq, [&](int row, int n_rows, int start, int n, const S* side) {
-          if (n == 6 && n_rows == 3) {
-            x.template segment<6>(start) += BallSide(side).lazyProduct(lambda.template segment<3>(row));
-            return;
-          }
-          for (int r = 0; r < n_rows; ++r)
-            for (int i = 0; i < n; ++i) x[start + i] += side[r * n + i] * lambda[row + r];
-        });
-    if (as_factored) return;
-    for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));
-  }
+  void response_to(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const;
   int velocities(int part) const { return model_->parts()[at(part)].n_x(); }
 
   const Model* model_;
@@ -174,5 +113,11 @@ class Group {
   bool closed_only_ = false;
   int size_;
 };
+
+// Group instances that src/body compiles once, with the function bodies of group-inl.h.
+extern template class Group<double, kMaxVelocities>;
+extern template class Group<double, Eigen::Dynamic>;
+extern template class Group<Dual<1>, kMaxVelocities>;
+extern template class Group<Dual<1>, Eigen::Dynamic>;
 
 }  // namespace pliant

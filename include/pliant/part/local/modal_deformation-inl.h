@@ -8,8 +8,8 @@
 #include <string>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
+#include <pliant/math/column_basis.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/math/header_only.h>
 #include <pliant/part/axial.h>
@@ -52,7 +52,7 @@ PLIANT_INLINE ModalDeformation::ModalDeformation(const Part& part, const LocalSe
       values.row(k) = field(basis_.points_at_rest.row(k).transpose()).transpose();
     const VecX<double> d = Nodes(basis_.project * values).reshaped(), m = basis_.mass.replicate(3, 1);
     on_modes = basis_.B.transpose() * m.cwiseProduct(d);
-    on_frame = (m.cwiseSqrt().asDiagonal() * G).colPivHouseholderQr().solve(m.cwiseSqrt().cwiseProduct(d));
+    on_frame = least_squares(m.cwiseSqrt().asDiagonal() * G, m.cwiseSqrt().cwiseProduct(d));
   };
   project(settings.displacement, initial_, initial_frame_);
   project(settings.velocity, initial_rate_, initial_frame_rate_);

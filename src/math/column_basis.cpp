@@ -1,0 +1,34 @@
+// Orthonormal bases of the columns of dense matrices, and least squares, by Eigen's QR factorisations.
+#include <pliant/math/column_basis.h>
+
+#include <Eigen/QR>
+
+namespace pliant {
+
+MatX<double> column_basis(const MatX<double>& A) {
+  const Eigen::HouseholderQR<MatX<double>> qr(A);
+  return qr.householderQ() * MatX<double>::Identity(A.rows(), A.cols());
+}
+
+MatX<double> column_basis(const MatX<double>& A, double dependent) {
+  Eigen::ColPivHouseholderQR<MatX<double>> qr(A);
+  qr.setThreshold(dependent);
+  return qr.householderQ() * MatX<double>::Identity(A.rows(), qr.rank());
+}
+
+MatX<double> complement_basis(const MatX<double>& A) {
+  const Eigen::HouseholderQR<MatX<double>> qr(A);
+  return MatX<double>(qr.householderQ()).rightCols(A.rows() - A.cols());
+}
+
+MatX<double> complement_basis(const MatX<double>& A, double dependent) {
+  Eigen::ColPivHouseholderQR<MatX<double>> qr(A);
+  qr.setThreshold(dependent);
+  return MatX<double>(qr.householderQ()).rightCols(A.rows() - qr.rank());
+}
+
+VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
+
+}  // namespace pliant
