@@ -27,7 +27,8 @@ def plant_of(problem, step):
     for i, body in enumerate(problem.bodies):
         inertia = SpatialInertia(body.mass, np.zeros(3), UnitInertia(*(body.inertia / body.mass)))
         bodies[i] = plant.AddRigidBody(f"body{i}", inertia)
-    # Yaw, pitch and roll of the frames of a joint are the angles of angles.py.
+    # The frames of a joint are rotated so that its yaw, pitch and roll are the first, second and third angle of
+    # angles.py. In the order YZX the pitch is minus the second angle.
     aligned = RotationMatrix() if angles.order(problem) == "ZYX" else RotationMatrix.MakeXRotation(-np.pi / 2)
     spanning, loops = problem.tree()
 

@@ -78,7 +78,8 @@ inline Problem read_problem(const std::string& path) {
   return p;
 }
 
-/// Returns the minimum CPU seconds of the loop over repeats with 0.2 s in total; prepare is not timed.
+/// Calls prepare() and loop() until the loops have taken 0.2 s in total, at most 50 times. Returns the CPU
+/// time of the fastest loop, s. prepare() is not timed.
 template <class Prepare, class Loop>
 double minimum_seconds(const Prepare& prepare, const Loop& loop) {
   double minimum = std::numeric_limits<double>::infinity(), spent = 0;

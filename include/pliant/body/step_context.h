@@ -1,4 +1,4 @@
-// The data of one step, in place of trains of parameters.
+// The data of one step. All stages of the step receive them as one argument.
 #pragma once
 
 #include <pliant/body/dynamics.h>

@@ -35,8 +35,8 @@ class ContactFinder {
   /// Velocity of side a relative to side b at a contact, m/s, world. It includes prescribed motion
   /// (`carried`).
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// Largest depth (m) of a contact at which the search still finds the side on which the parts touch. Only
-  /// for parts without local deformation.
+  /// Returns the largest admissible depth of a contact, m. The search may find a deeper contact on the far
+  /// side of the thinner part, where the normal is wrong. Only for parts without local deformation.
   double thin(const Contact& contact) const;
   /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
   /// one.
@@ -63,8 +63,8 @@ class ContactFinder {
   /// neighbourhood() for this step or a longer one. It is returned if no part moved beyond foreseen.spare.
   Neighbourhood neighbourhood_of(const State& state, const State& after, double t, double h, double reach,
                                  const Neighbourhood& foreseen) const;
-  /// Returns the least gap of the part of a contact over its other part, plane or obstacle, m; at most
-  /// max_gap.
+  /// Returns the least gap between the two sides of a contact, m. It is at most max_gap. Over an obstacle it
+  /// is also at most a tenth of the size of the part.
   double least_gap(const State& state, double t, const Contact& contact, double max_gap) const;
 
  private:

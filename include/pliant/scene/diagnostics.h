@@ -1,6 +1,6 @@
 // Faults of a scene. Each fault names its place, the value found and the value expected. All faults of a file
-// are collected and printed together, as  file:line:column: error: /json/pointer: value; expected ...;
-// nearest name
+// are collected and printed together. Each fault is one line:
+//   file:line:column: error: /json/pointer: value; expected ...; did you mean ...?
 #pragma once
 
 #include <cstddef>

@@ -65,9 +65,10 @@ bool encode(png_structp png, png_infop info, const Image& image, Encoding& encod
 void write_png(const Image& image, const std::filesystem::path& path) {
   if (image.width < 1 || image.height < 1 ||
       image.rgb.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3)
-    throw std::invalid_argument("cannot write " + path.string() + ": an image of " +
+    throw std::invalid_argument("cannot write " + path.string() + ": the image has " +
                                 std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                " pixels does not have " + std::to_string(image.rgb.size()) + " bytes");
+                                " pixels and " + std::to_string(image.rgb.size()) +
+                                " bytes; expected at least 1 x 1 pixels and 3 bytes for each pixel");
   Encoding encoding;
   encoding.bytes.reserve(image.rgb.size() / 4 + 4096);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoding, on_error, on_warning);

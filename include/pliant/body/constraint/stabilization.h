@@ -55,7 +55,8 @@ struct Stabilization {
   /// Returns the gains for a step of length h (s).
   Gains gains(double h, bool consistent) const {
     if (rule == BaumgarteRule::free) return {stab_alpha, stab_beta};
-    if (!follows_step(consistent) || !(h > 0)) return {rate, rate};  // the limit of small steps
+    // The gains of the rule critical are also the limit of those of step_consistent for h -> 0.
+    if (!follows_step(consistent) || !(h > 0)) return {rate, rate};
     const double r = std::exp(-rate * h);
     return {(1 - r * r) / (2 * h), (1 - r) / h};
   }

@@ -59,7 +59,7 @@ void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pu
   x += responses * W.completeOrthogonalDecomposition().solve(b);
 }
 
-/// Projects the changes of the rates of a group by the filter, and adds the corrections to v_dot.
+/// Projects the changes that the filter made to the rates of a group, and adds the corrections to v_dot.
 template <int Max>
 void project_group_rates(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
                          const ImplicitParts& parts, const Workspace<double>& work, VecX<double>& v_dot) {

@@ -54,8 +54,9 @@ class Reader {
 
   // The following members also return faulty objects, so that the sound values inside them can be read.
 
-  /// Returns the object under a key with its record; among several records, the one that the object was
-  /// validated against. For an absent key whose type is a single record, the reader returns the defaults.
+  /// Returns a reader of the object under a key, or else of the default of the key. If the type has several
+  /// records, the reader has the one that the object was validated against. If there is neither object nor
+  /// default and the type is a single record, the values of the reader are the defaults of this record.
   Reader object(const std::string& key) const;
   /// Returns the objects of the array under a key; empty for an absent key.
   std::vector<Reader> objects(const std::string& key) const;
