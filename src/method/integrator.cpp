@@ -25,8 +25,8 @@ std::unique_ptr<Integrator> make() {
 
 /// Returns the error of a step of h s that ends at t (s) and in which a joint closes, in sizes of a part or
 /// sizes per second. The gap decays at the rate of the stabilization (1/s) until it is kClosedGap; the
-/// projection then removes it at once. The time of closing is unknown within the step: the error is the
-/// change of the gap, or of the rate of the gap, during the step.
+/// projection then removes it at once. The time of closing is unknown within the step. The error is therefore
+/// the largest change of the gap, or of the rate of the gap, during the step.
 double closing_error(double rate, double h, double t) {
   const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // of the time, s
   return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate);

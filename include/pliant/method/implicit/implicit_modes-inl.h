@@ -1,4 +1,4 @@
-// Function bodies of implicit_modes.h: a diagonal solve for the modes and a small one for v_r.
+// Function bodies of implicit_modes.h: a diagonal solve for the modes and a small dense one for v_r.
 #pragma once
 
 #include <pliant/method/implicit/implicit_modes.h>
