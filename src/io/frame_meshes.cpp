@@ -9,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns a rectangle with the size of a plane's appearance, centred at the origin and perpendicular to
-/// `normal`.
+/// Returns a rectangle with the width and height of a plane's appearance, centred at the origin and
+/// perpendicular to `normal`.
 ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   constexpr double kLevel = 1e-9;
   const Vec3<double> level(-normal[1], normal[0], 0);  // perpendicular to z and to the normal
@@ -122,7 +122,8 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there = shown_.size();  // meshes set so far; obstacles and planes may appear and disappear
+  std::size_t there =
+      shown_.size();  // number of meshes set so far; obstacles and planes may appear and disappear
   auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
     if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);

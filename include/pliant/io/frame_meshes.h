@@ -1,4 +1,5 @@
 // The surface meshes of all visible parts, obstacles and planes at a state, for pictures and mesh files.
+// Vertex values are the strain or the displacement that the scene's coloring selects.
 #pragma once
 
 #include <optional>

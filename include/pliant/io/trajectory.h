@@ -1,6 +1,6 @@
 // trajectory.csv: the recorded motion as a table for plotting. It is computed from the recording when the run
-// ends. One header line, one line per recorded state, numbers in the shortest form that reads back exactly.
-// Columns:
+// ends. The table has a header line and one line per recorded state. Numbers have the shortest form that
+// reads back exactly. Columns:
 //   t                                        s
 //   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene requests it):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
@@ -53,7 +53,7 @@ class TrajectoryTable {
   std::vector<PlacedPoint> tracked_;
 };
 
-/// Writes trajectory.csv for all states of a recording; the file is whole or absent. Throws
+/// Writes trajectory.csv for all states of a recording. If the function throws, there is no new file. Throws
 /// std::system_error, RecordingMismatch.
 void write_trajectory(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
                       const Recording& recording);
