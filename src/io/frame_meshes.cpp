@@ -122,8 +122,7 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there =
-      shown_.size();  // number of meshes set so far; obstacles and planes may appear and disappear
+  std::size_t there = shown_.size();  // meshes set so far; obstacles and planes may appear and disappear
   auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
     if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);

@@ -214,7 +214,8 @@ namespace {
 /// change due to the accelerations.
 constexpr double kJump = 0.5;
 /// Other forces, such as contact, are assumed within a step if the accelerations at both ends predict neither
-/// the displacement nor the change of the rates to this accuracy, relative to that change.
+/// the displacements nor the rates well: both errors are more than this fraction of the change of the rates
+/// due to the accelerations.
 constexpr double kPushed = 0.2;
 /// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;

@@ -16,7 +16,7 @@
 namespace pliant {
 
 /// These functions return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables
-/// have equal columns, with indices in place of names.
+/// have these columns, with indices in place of names.
 std::vector<Column> contact_columns();
 std::vector<Column> joint_impulse_columns();
 
