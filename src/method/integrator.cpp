@@ -61,13 +61,12 @@ const std::vector<IntegratorInfo>& all_integrators() {
       {"implicit_midpoint", 2, "conserves quadratic invariants: for very many steps without friction",
        &make<ImplicitMidpoint>},
       {"esdirk", 4,
-       "ESDIRK 4(3): for motion with stiff springs or parameters, to a tolerance or in steps of one length",
+       "ESDIRK 4(3): for motion with stiff springs or parameters, with error control or fixed steps",
        &make<Esdirk>},
-      {"dormand_prince", 5,
-       "Dormand-Prince 5(4): for smooth motion, to a tolerance or in steps of one length",
+      {"dormand_prince", 5, "Dormand-Prince 5(4): for smooth motion, with error control or fixed steps",
        &make<DormandPrince>},
       {"dop853", 8,
-       "Dormand-Prince 8(5,3): for smooth motion at high accuracy, to a tolerance or in steps of one length",
+       "Dormand-Prince 8(5,3): for smooth motion at high accuracy, with error control or fixed steps",
        &make<Dop853>},
   };
   return all;

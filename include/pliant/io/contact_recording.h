@@ -32,6 +32,7 @@ class ContactRecordingWriter {
   /// Appends the contacts and the joint impulses of the last step of the simulation; nothing if the
   /// simulation has no contact. The rows stay in memory until flush().
   void append(const Simulation& simulation);
+  /// Writes the rows in memory to the files. With to_disk, they survive a power cut too.
   void flush(bool to_disk = false);
   std::size_t pending_bytes() const { return contacts_.pending_bytes() + impulses_.pending_bytes(); }
 

@@ -37,6 +37,7 @@ class RecordingWriter {
   /// Opens the tables in a folder and removes all states after the first `rows` states.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
+  /// Appends a state, which stays in memory until flush().
   void append(const State& state);
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.

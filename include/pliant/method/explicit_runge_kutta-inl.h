@@ -159,7 +159,7 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics
                                                         const State& high, StepCounters& counters) {
   const ContinuousExtension& extension = *tableau_->extension;
   const double t = low.time();
-  State modes = high;  // the stages read only the discrete modes
+  State modes = high;  // the stages read only its modes of limits, joints and sleep
   StepContext context(dynamics, modes, extension_work_, counters);
   const int n = tableau_->stages, all = n + 1 + extension.stages;
   if (!end_rates_valid(dynamics, t + h, high)) {

@@ -28,8 +28,8 @@ class ExplicitRungeKutta : public Integrator {
                 StepCounters& counters) override;
 
  private:
-  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, and stores them in the
-  /// columns of a stage.
+  /// Evaluates the rates at (t, q_, v_), with the modes of limits, joints and sleep of step.state, and stores
+  /// the rates in the columns of a stage.
   void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   /// Returns the dense output by the continuous extension of the tableau. Throws StepFailure or
   /// InvertedElement if an additional stage leaves the range of the model.
