@@ -289,7 +289,7 @@ State Recording::at(double t) const {
   if (after == 0) return state(0);
   State low = state(after - 1);
   const State high = state(after);
-  // A frame at the end of a step is the state there, also if the two times differ by rounding.
+  // A frame at the end of a step shows the state there, also if the two times differ by rounding.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;

@@ -1,8 +1,8 @@
-// The steps of a run, the states that it records, and the times of its frames. Frame k is at time k / rate.
-// A frame at the end of a step is the state there. For a frame within a step, the states at the start and at
-// the end of the step are recorded, so that the frame is interpolated within a single step. The first and the
-// last state are always recorded. With variable steps, a state is recorded if a frame lies in the step before
-// it or may lie in the step after it.
+// The steps of a run, the states that it records, and the times of its frames. A frame is the picture or the
+// mesh file of one moment; frame k is at time k / rate. A frame at the end of a step shows the state there.
+// For a frame within a step, the states at the start and at the end of the step are recorded, so that the
+// frame is interpolated within a single step. The first and the last state are always recorded. With variable
+// steps, a state is recorded if a frame lies in the step before it or may lie in the step after it.
 #pragma once
 
 #include <cstdint>

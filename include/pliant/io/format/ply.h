@@ -15,7 +15,7 @@ namespace pliant {
 /// (double); empty for none. If it is not empty, each mesh must have values.
 std::string ply_bytes(const std::vector<NamedMesh>& meshes, const std::string& values = "");
 
-/// Writes a PLY file (whole or absent). Throws std::system_error.
+/// Writes a PLY file (whole or absent, see whole_file.h). Throws std::system_error.
 void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& values = "");
 

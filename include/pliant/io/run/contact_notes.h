@@ -18,8 +18,8 @@ double deepest_share(const Simulation& simulation);
 /// appear only as "max_depth" in run.json.
 inline constexpr double kReportedOverlap = 1e-3;
 
-/// Indices of two things in contact: the first part, then the second part, the plane and the obstacle. Two of
-/// the last three are -1.
+/// Indices that name both sides of a contact: the first part, then the second part, the plane and the
+/// obstacle. Two of the last three are -1.
 using TouchingPair = std::array<int, 4>;
 
 /// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation: the

@@ -9,8 +9,8 @@
 namespace pliant {
 
 /// Returns notes on the constraint rows at the state of the simulation that are redundant, that contradict
-/// other rows, or whose row of C_q is zero (no direction); empty if there are none. Redundant rows do not
-/// change the motion; the constraint forces are computed without them.
+/// other rows, or whose row of C_q is zero (no direction); empty if there are no such rows. Redundant rows do
+/// not change the motion; the constraint forces are computed without them.
 std::vector<std::string> redundancy_notes(const Simulation& simulation);
 
 /// Returns a note with the number of open joints and the widest gap, or an empty text if all joints are
