@@ -35,7 +35,8 @@ std::int64_t rows_until(const std::filesystem::path& path, double t) {
   return rows;
 }
 
-/// Writes a table as CSV. The `names` columns after the time are indices into names_of and become names.
+/// Writes a table as CSV. The first column is the time. The next `names` columns are indices into names_of
+/// and become names.
 void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<Column>& columns, const std::vector<std::string>& names_of,
                  std::size_t names) {
@@ -124,7 +125,8 @@ ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::pat
 
 namespace {
 
-/// Returns the index of the second thing of a contact in the list of parts, planes and obstacles.
+/// Returns the index of the second side of a contact (a part, plane or obstacle) in the list of all parts,
+/// then planes, then obstacles.
 int number_of_other_thing(const Model& model, const Contact& contact) {
   const std::size_t parts = model.parts().size(), planes = model.body().contact.planes.size();
   if (contact.b.part >= 0) return contact.b.part;

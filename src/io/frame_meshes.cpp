@@ -9,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns a rectangle with the size of a plane's appearance, centred at the origin and perpendicular to
-/// `normal`.
+/// Returns a rectangle with the width and height of a plane's appearance, centred at the origin and
+/// perpendicular to `normal`.
 ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   constexpr double kLevel = 1e-9;
   const Vec3<double> level(-normal[1], normal[0], 0);  // perpendicular to z and to the normal

@@ -11,7 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxSteps = 1e12;
-/// Tolerance, as a fraction of a step, within which a frame is at the end of the step.
+/// A frame whose distance from the end of a step is at most this fraction of the step is at the end of the
+/// step.
 constexpr double kOnStep = 1e-6;
 
 void require(bool good, const char* name, double value, const char* expected) {

@@ -214,15 +214,17 @@ namespace {
 /// change due to the accelerations.
 constexpr double kJump = 0.5;
 /// Other forces, such as contact, are assumed within a step if the accelerations at both ends predict neither
-/// the displacements nor the rates to this relative accuracy.
+/// the displacements nor the rates well: both errors are more than this fraction of the change of the rates
+/// due to the accelerations.
 constexpr double kPushed = 0.2;
 /// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;
 
-/// Returns q at a fraction x of the step from one state to another. Each block of coordinates is
-/// interpolated by a polynomial of degree 5 through q, its rates and its second derivatives at both states.
-/// If there is an impact at the end, the rate and the second derivative there are not used. If other forces
-/// acted within the step, the polynomial is the cubic Hermite one.
+/// Returns q at a fraction x of the step from the state `low` to the state `high`; quaternions are not
+/// normalised. Each block of coordinates is interpolated by a polynomial of degree 5 through q, its rates and
+/// its second derivatives at both states. If there is an impact at the end, the rate and the second
+/// derivative there are not used. If other forces acted within the step, the polynomial is the cubic Hermite
+/// one.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
   Workspace<double> work;
@@ -287,7 +289,7 @@ State Recording::at(double t) const {
   if (after == 0) return state(0);
   State low = state(after - 1);
   const State high = state(after);
-  // A frame at the end of a step is the state there, also if the two times differ by rounding.
+  // A frame at the end of a step shows the state there, also if the two times differ by rounding.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;

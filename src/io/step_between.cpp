@@ -8,8 +8,8 @@
 namespace pliant {
 
 namespace {
-/// Largest accepted ratio of two differences: that of a full explicit step from the recorded state at its
-/// end, and that of an explicit half step from the interpolation there.
+/// Largest accepted ratio of two differences. The first is between the result of a full explicit step and the
+/// recorded state `high`. The second is between the result of an explicit half step and the interpolated q.
 constexpr double kNearer = 0.1;
 }  // namespace
 

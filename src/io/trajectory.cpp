@@ -33,9 +33,9 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
     : scene_(&scene),
       simulation_(&simulation),
       parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMaxParts)) {
-  // The centre of mass of a deforming part leaves the origin of its frame, unless its shape stays symmetric.
-  // The state at time 0 does not show which parts stay symmetric, so every part with deformations and
-  // dynamic parameters gets the columns.
+  // The centre of mass of a deforming part moves away from the origin of its frame, unless the shape stays
+  // symmetric. The state at time 0 does not show which parts stay symmetric, so every part with deformations
+  // and dynamic parameters gets the columns.
   for (const PartModel& part : simulation.model().parts()) {
     const double offset = part.part->rest_inertia().moment.norm();
     const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();

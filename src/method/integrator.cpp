@@ -25,8 +25,8 @@ std::unique_ptr<Integrator> make() {
 
 /// Returns the error of a step of h s that ends at t (s) and in which a joint closes, in sizes of a part or
 /// sizes per second. The gap decays at the rate of the stabilization (1/s) until it is kClosedGap; the
-/// projection then removes it at once. The time of closing is unknown within the step: the error is the
-/// change of the gap, or of the rate of the gap, during the step.
+/// projection then removes it at once. The time of closing is unknown within the step. The error is therefore
+/// the largest change of the gap, or of the rate of the gap, during the step.
 double closing_error(double rate, double h, double t) {
   const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // of the time, s
   return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate);
@@ -61,13 +61,12 @@ const std::vector<IntegratorInfo>& all_integrators() {
       {"implicit_midpoint", 2, "conserves quadratic invariants: for very many steps without friction",
        &make<ImplicitMidpoint>},
       {"esdirk", 4,
-       "ESDIRK 4(3): for motion with stiff springs or parameters, to a tolerance or in steps of one length",
+       "ESDIRK 4(3): for motion with stiff springs or parameters, with error control or fixed steps",
        &make<Esdirk>},
-      {"dormand_prince", 5,
-       "Dormand-Prince 5(4): for smooth motion, to a tolerance or in steps of one length",
+      {"dormand_prince", 5, "Dormand-Prince 5(4): for smooth motion, with error control or fixed steps",
        &make<DormandPrince>},
       {"dop853", 8,
-       "Dormand-Prince 8(5,3): for smooth motion at high accuracy, to a tolerance or in steps of one length",
+       "Dormand-Prince 8(5,3): for smooth motion at high accuracy, with error control or fixed steps",
        &make<Dop853>},
   };
   return all;

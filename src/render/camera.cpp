@@ -1,4 +1,5 @@
-// The smallest distance along a fixed direction at which all corners of a box are inside the picture.
+// Finds the smallest distance along a fixed direction at which all corners of a box are inside the picture,
+// with a margin.
 #include <pliant/render/camera.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Layout of the colour bar. Lengths are in heights of a digit; the height of a digit is proportional to that
+// Layout of the colour bar. The unit of lengths is the height of a digit, which is proportional to the height
 // of the image.
 #include "color_bar.h"
 

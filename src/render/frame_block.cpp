@@ -23,8 +23,9 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kNear = 0.01;       // distance of the near plane / distance between eye and target
 constexpr double kShadowReach = 12;  // largest half size of the shadow map / distance between eye and target
 
-// The filter of the shadow map extends 4 texels to each side and 5.7 texels to its corners. With this offset,
-// in texels, a plane does not shadow itself.
+// The filter of the shadow map extends 4 texels to each side and 5.7 texels to its corners. Lookups are
+// therefore offset by this number of texels along the normal of the body, so that a plane does not shadow
+// itself.
 constexpr double kLift = 6;
 
 Vector4f with(const Vector3f& xyz, float w) {
@@ -71,12 +72,12 @@ Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const 
 }
 
 // Rounds a size up to an integer power of 2^(1/4). Small changes of a box then keep the texels of the shadow
-// map, so that shadows do not flicker.
+// map and of the contact map, so that shadows do not flicker.
 double steady_size(double size) {
   return std::exp2(std::ceil(4 * std::log2(size)) / 4);
 }
 
-// Fits the shadow map to the bodies. Sets shadow and to_key[3].
+// Fits the shadow map to the bodies. distance: from the eye to the target, m. Sets shadow and to_key[3].
 void fit_shadow(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, double distance, int shadow_side) {
   const Vector3d b = frame.to_key.head<3>().cast<double>();
   const Vector3d r = (std::abs(b[2]) < 0.9 ? Vector3d::UnitZ() : Vector3d::UnitX()).cross(b).normalized();
@@ -156,11 +157,11 @@ void check_settings(const Picture& picture, const Vector3d& eye) {
   require(camera.up.normalized().cross(eye / distance).norm() > 1e-6,
           "the view is along the up direction of the camera");
   require(camera.field_of_view >= 0.1 && camera.field_of_view <= 170,
-          "field_of_view must be in [0.1, 170] degrees");
-  require(lights.to_key.allFinite() && lights.to_key.norm() > 0, "to_key must be a direction");
-  require(lights.key_strength >= 0 && lights.key_strength <= 100, "key_strength must be in [0, 100]");
+          "camera.field_of_view must be in [0.1, 170] degrees");
+  require(lights.to_key.allFinite() && lights.to_key.norm() > 0, "lights.to_key must be finite and not zero");
+  require(lights.key_strength >= 0 && lights.key_strength <= 100, "lights.key_strength must be in [0, 100]");
   require(lights.ambient_strength >= 0 && lights.ambient_strength <= 100,
-          "ambient_strength must be in [0, 100]");
+          "lights.ambient_strength must be in [0, 100]");
   require(std::isfinite(floor.height), "the height of the ground is not finite");
   require(floor.spacing >= 0 && std::isfinite(floor.spacing),
           "the spacing of the grid must be positive, or 0 for automatic");

@@ -26,7 +26,7 @@ struct FrameBlock {
   Eigen::Vector4f grid_color;
   Eigen::Vector4f grid;  ///< x y: position of the target, in cells from a strong line; z: size of a cell, m
   Eigen::Vector4f fade;  ///< x y: radii between which the ground fades, m; z: texel of the contact map, m; w:
-                         ///< its height, m
+                         ///< height of the contact map, m
   Eigen::Vector4f viewport;  ///< x y: size in samples; z: texel of the shadow map, as a share of the map
 };
 

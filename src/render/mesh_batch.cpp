@@ -1,4 +1,5 @@
-// The pairs of position and normal are found once for each topology. Each frame only collects their values.
+// The pairs of position and normal (mesh_batch.h) are found once, and again only if the triangles change.
+// Each frame only collects the values of the pairs.
 #include "mesh_batch.h"
 
 #include <algorithm>
@@ -60,7 +61,7 @@ MeshBatch::Topology MeshBatch::make_topology(const TriangleMesh& mesh, std::size
 
   Topology topology{mesh.triangles, mesh.corners, {}, {}, {}};
   topology.indices.reserve(static_cast<std::size_t>(mesh.triangles.size()));
-  // The pairs of a position form a linked list: first[position], then next[pair].
+  // The pairs with one position form a linked list: first[position], then next[pair].
   std::vector<int> first(static_cast<std::size_t>(mesh.x.cols()), -1), next;
   for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
     const int position = mesh.triangles.data()[k], normal = mesh.corners.data()[k];

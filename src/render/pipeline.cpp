@@ -1,5 +1,5 @@
 // Draws the passes of a picture. Opaque objects are drawn before the tracks, in the order bodies, ground,
-// background. This is about from front to back, so that each sample is shaded about once.
+// background. This order is roughly from front to back, so that each sample is shaded about once.
 #include "pipeline.h"
 
 #include <algorithm>

@@ -23,7 +23,7 @@ struct MapTarget {
   gl::Framebuffer framebuffer;
 };
 
-/// The context must be current during all calls and the destructor.
+/// Draws pictures of one size. The context must be current during all calls and the destructor.
 class Pipeline {
  public:
   Pipeline(const GlContext& context, int width, int height);

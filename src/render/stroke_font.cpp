@@ -68,7 +68,7 @@ const char* strokes_of(char letter) {
   return "";
 }
 
-// Returns the largest x of the strokes.
+// Returns the largest x of the strokes; kBlank if there are none.
 double reach(std::string_view strokes) {
   if (strokes.empty()) return kBlank;
   int most = 0;

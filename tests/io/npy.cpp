@@ -27,7 +27,7 @@ void append_rows(NpyWriter& writer, int columns, int from, int to) {
 
 }  // namespace
 
-TEST_CASE("a table that is written and read again is the same bit for bit") {
+TEST_CASE("a table is read back bit for bit as it was written") {
   const NewFolder folder;
   for (const int columns : {kNpyVector, 0, 1, 7}) {
     const fs::path file = folder / ("t" + std::to_string(columns) + ".npy");

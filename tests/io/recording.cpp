@@ -126,7 +126,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
   writer.flush();
   CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
-  for (const std::size_t from_end : {5, 75, 85}) {  // a force, and the identity of the contact
+  // Bytes of a force and of the index of part a of the last contact, and of a force of the contact before it.
+  for (const std::size_t from_end : {5, 75, 85}) {
     std::string bytes = whole;
     bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);
     set_bytes(folder / kContactCacheFile, bytes);

@@ -266,7 +266,7 @@ TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, 
   CHECK(NpyReader(folder / "whole" / kContactCacheFile).rows() > 10);
 }
 
-TEST_CASE("pictures of a run with error control follow the motion, for all step lengths") {
+TEST_CASE("pictures of a run with error control follow the motion within short and long steps") {
   // A free top, and a bouncing ball whose steps are as long as its flights.
   auto scene_of = [](double tolerance) {
     auto scene = free_top();
@@ -643,7 +643,7 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
     CHECK(count(record, "at t = 0.2 s ball 'hook' engages with an impulse of ") == 1);
     CHECK(count(record, "engages") == 1);
   }
-  SECTION("a joint that stops a spin, and one beside it without effect") {
+  SECTION("a joint that stops a spin, and a second joint that has no impulse") {
     const RunRecord record = notes_of("spin", [](MultiBody& body, Part& top) {
       body.gravity.setZero();
       top.velocity({0, 0, 0}, {0, 0, 5});
@@ -680,7 +680,7 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
     CHECK(count(record, "may never close") == 0);
     CHECK(count(record, "still open") == 0);
   }
-  SECTION("without projection a small gap is no open joint") {
+  SECTION("without projection, a joint with a small gap is not reported as open") {
     const RunRecord record = notes_of("unprojected", [](MultiBody& body, Part& top) {
       body.stabilization.projection = false;
       body.gravity = {0, 0, -9.81};

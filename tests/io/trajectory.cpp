@@ -1,4 +1,5 @@
-// trajectory.csv has a header and numbers in full precision. For many parts it has only totals.
+// trajectory.csv has a header and numbers in full precision. For more than a hundred parts it has only totals
+// (energies, works and momenta).
 #include <pliant/io/trajectory.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
-// Steps with error control: the error follows the tolerance, times are hit exactly, a resumed run gives
-// identical bits, events are located, and failures are reported. Also the automatic choice of the method.
+// Steps with error control: the error follows the tolerance, steps end exactly at requested times, a resumed
+// run gives identical bits, impacts are located, and failures are reported. Also the automatic choice of the
+// method.
 #include "catch.h"
 
 #include <functional>
@@ -48,7 +49,8 @@ void stiff_pendulum(MultiBody& body) {
   body.ball("string", world(0, 0, 0.5), point(part, kPi / 2, 0));
 }
 
-/// Applies a force that changes its sign more often than any step can resolve.
+/// Adds a ball with a force that acts from 0.1 s on and changes its sign more often than any step can
+/// resolve.
 void noisy_ball(MultiBody& body) {
   Part& part = body.add<Primitive<Sphere>>("ball");
   body.force("noise", point(part, 0, 0), [](double t, const Vec3<double>&, const Vec3<double>&) {
@@ -75,8 +77,9 @@ TEST_CASE("errors follow the tolerance", "[error]") {
   }
 }
 
-TEST_CASE("steps with error control hit times exactly, and a shortened step does not shorten the next one",
-          "[error]") {
+TEST_CASE(
+    "steps with error control end exactly at given times, and a shortened step does not shorten the next",
+    "[error]") {
   MultiBody body;
   pendulum(body);
   Simulation free(body, "dop853", 1, 1e-8);
@@ -200,7 +203,7 @@ TEST_CASE("joints close as accurately as the tolerance asks", "[error]") {
     part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.5, 0.2, 0}).velocity({0, 0.6, 0}, {0, 0, 2});
     body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
   };
-  constexpr double opens = 0.5, closes = 2;  // before the joint has closed, and after
+  constexpr double opens = 0.5, closes = 2;  // s: before and after the joint has closed
   for (const std::string& method : controlled_integrators()) {
     const bool low = make_integrator(method)->order() == 2;
     for (const double end : {opens, closes}) {

@@ -18,7 +18,7 @@ struct Result {
   State state;
   Ledger ledger;
 };
-/// Returns the state of two deforming parts, with the loads that `build` adds, after 0.25 s.
+/// Returns state and ledger after 0.25 s for two deforming parts with the loads that `build` adds.
 Result end_of(const char* method, int steps, const Build& build) {
   MultiBody body;
   Part& a = test::tumbling_solid(body, "a");

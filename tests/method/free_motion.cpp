@@ -261,7 +261,7 @@ TEST_CASE("tumbling with all parameters dynamic: semi-implicit Euler is of first
   CHECK(test::observed_order(energy) >= 0.9);
 }
 
-TEST_CASE("with a dynamic exponent energy and momenta are conserved at fourth order, too", "[motion][long]") {
+TEST_CASE("with a dynamic exponent, energy and angular momentum are conserved at order 4", "[motion][long]") {
   std::vector<double> energy, angular;
   for (int steps : {80, 160, 320}) {
     MultiBody body;
@@ -281,7 +281,7 @@ TEST_CASE("with a dynamic exponent energy and momenta are conserved at fourth or
   CHECK(test::observed_order(angular) >= 3.9);
 }
 
-TEST_CASE("P is conserved to rounding where the frame is at the centre of mass", "[motion]") {
+TEST_CASE("momentum is conserved to rounding if the frame is at the centre of mass", "[motion]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();

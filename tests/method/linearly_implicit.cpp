@@ -234,7 +234,7 @@ TEST_CASE("a stiff solid with light damping: order 2 in steps of one to four tim
       soft.parameters = parameters;
       soft.resolution = 3;
       soft.velocity_factor = velocity_factor;
-      soft.beta = 3e-5;  // near critical damping of the fastest motion, which such steps do not resolve
+      soft.beta = 3e-5;  // near critical damping of the fastest motion, which these steps do not resolve
       for (const Build& build : {flying(soft), hanging(soft)})
         check_order(build, 64 * explicit_limit(build), {16, 32, 64});
     }
@@ -339,7 +339,8 @@ TEST_CASE("steps of 100 times the explicit limit are stable for a thousand steps
 }
 
 TEST_CASE(
-    "100 times the explicit limit for membranes invariant to rotation, also under pressure: no energy gain",
+    "100 times the explicit limit, membrane laws that are valid for all rotations, also under pressure: no "
+    "energy gain",
     "[implicit][stable][long]") {
   for (const std::string membrane : {"st_venant_kirchhoff_membrane", "neo_hookean_membrane"})
     for (const Law& filled : {Law{"nothing", {}}, Law{"pressure", {200}}, Law{"gas", {8200, 1.4, 8000}}})
@@ -423,7 +424,7 @@ TEST_CASE("a stiff part on joints approaches the rigid motion as its stiffness g
 }
 
 TEST_CASE(
-    "the stiffness is factored once; again after a change of the step, and in each step where it changes",
+    "the stiffness is factored once, again after a change of the step length, and in each step if it changes",
     "[implicit]") {
   MultiBody body;
   flying(solid("elastic", 1000))(body);
@@ -571,7 +572,8 @@ TEST_CASE("a stiff part on a string that becomes taut", "[implicit][joints][long
 
 namespace {
 
-/// Drops a ball of elements or polynomials, with Young's modulus E, on a plane.
+/// Drops a ball of elements or polynomials, with Young's modulus E (Pa), on a plane, and checks that it comes
+/// to rest.
 void drop(Basis basis, double E) {
   CAPTURE(basis == Basis::nodes, E);
   const double h = 1e-3, radius = 0.1;

@@ -22,7 +22,7 @@ struct Problem {
   const char* name;
   std::function<void(MultiBody&)> build;
   double end;
-  int steps;  ///< unit of the number of steps: each order of a method uses a multiple or a fraction
+  int steps;  ///< unit of the number of steps, of which each order uses a multiple or a fraction
 };
 
 /// Two links, one hanging from the other, both stretching.
@@ -45,8 +45,8 @@ void on_spring(MultiBody& body) {
   body.spring("spring", point(part, 0.4, 0.3), world(0, 0, 1), 500, 5, 0.5);
 }
 
-/// Bodies in a row, each connected to the previous one by another joint: a hinge to the world, a slider, a
-/// plane, a line and a weld.
+/// Bodies in a row, each connected to the previous one by a different type of joint: a hinge to the world, a
+/// slider, a plane, a line and a weld.
 void row_of_joints(MultiBody& body) {
   auto at = [](Part& part, const Vec3<double>& x) {
     part.prepare();
@@ -310,7 +310,7 @@ TEST_CASE("steps of the stiff method do not depend on the stiffness", "[methods]
 }
 
 TEST_CASE("implicit methods integrate stiff links that rotate relative to each other", "[methods]") {
-  // In the limit the links are rigid.
+  // In the limit of infinite stiffness the links are rigid.
   auto build = [](MultiBody& body, double stiffness) {
     soft_pendulum(body);
     for (const auto& part : body.parts()) {

@@ -15,7 +15,7 @@ using namespace pliant;
 
 namespace {
 
-// Returns the line of the first mapped library whose name is that of OpenGL or of an implementation of
+// Returns the line of /proc/self/maps of the first library that belongs to OpenGL or to an implementation of
 // OpenGL; empty if there is none.
 std::string mapped_gl_library() {
   std::ifstream maps("/proc/self/maps");

@@ -1,7 +1,7 @@
 // The contacts of the last step before each recorded state, and the reaction impulses of joints. The run
-// records both in contacts.npy and joint_impulses.npy, and writes them as contacts.csv and
-// joint_impulses.csv at its end. Impacts within a step divide the step into sections. The tables have one
-// row per contact and section, and one row per joint with an impulse.
+// records both in contacts.npy and joint_impulses.npy, and writes them as contacts.csv and joint_impulses.csv
+// at its end. Impacts within a step divide the step into sections. For each step, contacts.npy has one row
+// per contact and section, and joint_impulses.npy one row per joint with an impulse.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace pliant {
 
-/// Return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables have the same
-/// columns, with indices in place of names.
+/// These functions return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables
+/// have these columns, with indices in place of names.
 std::vector<Column> contact_columns();
 std::vector<Column> joint_impulse_columns();
 
@@ -29,8 +29,10 @@ class ContactRecordingWriter {
   /// damaged.
   static ContactRecordingWriter resume(const std::filesystem::path& folder, double t);
 
-  /// Appends the contacts of the last step of the simulation. The rows stay in memory until flush().
+  /// Appends the contacts and the joint impulses of the last step of the simulation; nothing if the
+  /// simulation has no contact. The rows stay in memory until flush().
   void append(const Simulation& simulation);
+  /// Writes the rows in memory to the files. With to_disk, they survive a power cut too.
   void flush(bool to_disk = false);
   std::size_t pending_bytes() const { return contacts_.pending_bytes() + impulses_.pending_bytes(); }
 

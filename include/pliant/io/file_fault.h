@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Throws std::system_error "cannot ACTION PATH: reason" for a value of errno. For a full disk, the message
-/// also contains the free bytes and, if not 0, the `needed` bytes.
+/// Throws std::system_error "cannot ACTION PATH: reason" for a value of errno. For a full disk or an exceeded
+/// quota, the message also contains the free bytes and, if not 0, the `needed` bytes.
 [[noreturn]] void throw_file_fault(int error, const char* action, const std::filesystem::path& path,
                                    std::size_t needed = 0);
 

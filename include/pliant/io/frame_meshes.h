@@ -1,4 +1,5 @@
 // The surface meshes of all visible parts, obstacles and planes at a state, for pictures and mesh files.
+// Vertex values are the strain or the displacement that the scene's coloring selects.
 #pragma once
 
 #include <optional>
@@ -39,9 +40,8 @@ class FrameMeshes {
   /// Returns the bounding box of the visible parts, all visible obstacles, and the planes that act at the
   /// time of the state, m, world.
   Eigen::AlignedBox3d bounds(const State& state) const;
-  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if there
-  /// are none. The maximum is not used, because at a point force it grows without bound as the mesh is
-  /// refined.
+  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if no part
+  /// is. The maximum is not used, because at a point force it grows without bound as the mesh is refined.
   std::optional<double> high_value(const State& state) const;
   /// Returns the number of triangles of all meshes.
   std::int64_t triangles() const;

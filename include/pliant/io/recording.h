@@ -1,9 +1,8 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
-// state is a state after a step, never an interpolated one. A run resumed from it reproduces all later
-// states bit by bit.
-// layout.json names every column.
+// state is a state after a step, never an interpolated one. A run resumed from it reproduces all later states
+// bit by bit. layout.json names every column.
 #pragma once
 
 #include <cstdint>
@@ -33,11 +32,12 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {
  public:
-  /// Creates new tables in a folder without tables.
+  /// Creates new tables. Throws std::system_error if a table exists.
   static RecordingWriter create(const std::filesystem::path& folder, const Model& model);
   /// Opens the tables in a folder and removes all states after the first `rows` states.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
+  /// Appends a state, which stays in memory until flush().
   void append(const State& state);
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.
@@ -68,10 +68,10 @@ class Recording {
   State state(std::int64_t row) const;
   /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
-  /// With error control, the state between two steps is the result of a shorter step of dop853 (order 8)
-  /// from the previous state, if a full step of dop853 leads to the next state. Otherwise q is the quintic
-  /// interpolant of q, v and the accelerations, and v is linear. Times outside the recording give its first
-  /// or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
+  /// With error control, the state between two recorded states is the result of a shorter step of dop853
+  /// (order 8) from the first of them, if a full step of dop853 leads to the second one. Otherwise q is the
+  /// quintic interpolant of q, v and the accelerations, and v is linear. Times outside the recording give its
+  /// first or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
   State at(double time) const;
 
  private:

@@ -26,7 +26,7 @@ inline constexpr std::size_t kFirstCachedContact = 5, kEndOfCachedContacts = 6;
 std::vector<Column> contact_cache_columns();
 /// Returns the row of supports.npy for a cached contact.
 std::vector<double> cached_contact_row(const CachedContact& contact);
-/// Reads a cached contact from a row of supports.npy. Returns false if an index is not an integer >= -1.
+/// Sets a cached contact from a row of supports.npy. Returns false if an index is not an integer >= -1.
 [[nodiscard]] bool read_cached_contact(const double* row, CachedContact& contact);
 
 /// Computes the row of modes.npy for a state. end_of_cached_contacts: one past the last row of the state in

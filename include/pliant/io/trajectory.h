@@ -1,16 +1,18 @@
 // trajectory.csv: the recorded motion as a table for plotting. It is computed from the recording when the run
-// ends. One header line, one line per recorded state, numbers in the shortest form that reads back exactly.
-// Columns:
+// ends. The table has a header line and one line per recorded state. Numbers have the shortest form that
+// reads back exactly. Columns:
 //   t                                        s
 //   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene requests it):
-//     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
+//     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of its frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s, world; rad/s, body frame
 //     NAME.PARAMETER_dot                     rates of the dynamic parameters
 //     NAME.com.x y z                         centre of mass (m, world), if it is not the frame's origin
 //   track.NAME.x y z                         tracked points, m, world
-//   joint.NAME.force.x y z, joint.NAME.gap   force on its first side, N, world; gap, m (only with parts)
-//   joint.NAME.torque.x y z                  N m about the joint, for joints that constrain rotation
+//   if the parts have columns, for every joint NAME:
+//     joint.NAME.force.x y z                 force on the first side of the joint, N, world
+//     joint.NAME.torque.x y z                N m about the joint, for joints that constrain rotation
+//     joint.NAME.gap                         gap, m
 //   energy.kinetic gravity elastic springs total, work.KIND   J; energy.local with local deformation
 //   balance                                  J: energy.total - its value at time 0 - all works
 //   momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
@@ -53,7 +55,7 @@ class TrajectoryTable {
   std::vector<PlacedPoint> tracked_;
 };
 
-/// Writes trajectory.csv for all states of a recording; the file is whole or absent. Throws
+/// Writes trajectory.csv for all states of a recording. If the function throws, there is no new file. Throws
 /// std::system_error, RecordingMismatch.
 void write_trajectory(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
                       const Recording& recording);

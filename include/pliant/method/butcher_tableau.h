@@ -6,15 +6,15 @@ namespace pliant {
 /// Dense output of a Runge-Kutta method: a polynomial in the fraction x of the step, from 0 to 1 (Hairer,
 /// Norsett & Wanner, Solving Ordinary Differential Equations I, section II.6):
 ///   u(x) = u_0 + x (u_1 - u_0 + y (a + x (b + y (h d_0 k + x (h d_1 k + y (...))))))),   y = 1 - x,
-/// with a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h k_end - a, as in cubic Hermite interpolation. k_i are
-/// the rates of all stages, of the end of the step and of the additional stages, in this order; k_end are
-/// those at the end of the step. d_j k = sum_i d_ji k_i.
+/// with u_0 and u_1 at the start and at the end of the step, a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h
+/// k_end - a, as in cubic Hermite interpolation. k_i are the rates at all stages, at the end of the step and
+/// at the additional stages, in this order; k_end are those at the end of the step. d_j k = sum_i d_ji k_i.
 struct ContinuousExtension {
   int stages;       ///< additional stages, after the rates at the end of the step
-  const double* a;  ///< row by row, one row for each additional stage: weights of all k before it
+  const double* a;  ///< row by row, one row for each additional stage: weights of all k_i before it
   const double* c;  ///< one node for each additional stage
   int terms;        ///< number of the terms d_0, d_1, ...
-  const double* d;  ///< row by row, one row for each term: weights of all k
+  const double* d;  ///< row by row, one row for each term: weights of all k_i
 };
 
 struct ButcherTableau {
@@ -23,8 +23,8 @@ struct ButcherTableau {
   /// a: row by row the entries below the diagonal, from the second row on; b: weights; c: nodes.
   const double *a, *b, *c;
   /// h sum error_i k_i is the difference from a method of lower order. second_error: the difference from a
-  /// method of still lower order; nullptr if there is none. If rates_at_end is true, both have one more
-  /// entry.
+  /// method of still lower order; nullptr if there is none. Both have one entry for each stage, and one more
+  /// for the end of the step if rates_at_end is true.
   const double *error, *second_error;
   int error_order;    ///< the estimate is O(h^(error_order + 1))
   bool rates_at_end;  ///< whether the estimate uses the rates at the end of the step

@@ -1,6 +1,6 @@
 // Function body of carry_momenta.h. In the body frame the angular momentum L of each part about its centre of
-// mass obeys L_dot = torque - omega x L. L after the step is L + h torque from before the step, rotated by -h
-// omega.
+// mass obeys L_dot = torque - omega x L. The new L is (L + h torque), evaluated before the step and rotated
+// by -h omega with the omega after the update.
 #pragma once
 
 #include <pliant/method/carry_momenta.h>

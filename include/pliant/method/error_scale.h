@@ -1,8 +1,9 @@
 // The norm of the error of a step, in units of the tolerance (README.md of this folder, Error of a step).
-// Each block of the coordinates of a part has its own unit. It is the size of the part for the position, for
-// parameters that are lengths, and for the root mean square of the local displacement. It is the radian for
-// the rotation, and their own unit for other parameters. Errors of rates are measured in these units per time
-// T, with T = 1 s / (1 + r), where r is the fastest rate of the part in these units per second.
+// Each block of the coordinates of a part has its own unit. The unit is the size of the part for the
+// position, for parameters that are lengths, and for the root mean square of the local displacement. The unit
+// of the rotation is the radian. Other parameters keep their own unit. Errors of rates are measured in these
+// units per time T, with T = 1 s / (1 + r), where r is the fastest rate of the part in these units per
+// second.
 #pragma once
 
 #include <cmath>
@@ -31,7 +32,8 @@ class ErrorScale {
   double norm(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
   /// Returns the largest error of the coordinates alone, in tolerances.
   double norm(const VecX<double>& q_error) const;
-  /// Names the block with the largest error, for example "the velocity of part 'ball'".
+  /// Returns the name of the block with the largest error, for example "the velocity of part 'ball'"; empty
+  /// if no part moves.
   std::string worst(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
 
  private:

@@ -19,7 +19,8 @@ namespace esdirk {
 
 inline constexpr int kStages = 6;
 inline constexpr double kGamma = 0.25;
-/// Entries below the diagonal, row by row. The last row has the weights of the method.
+/// Entries below the diagonal, row by row; those on it are kGamma. The last row has the weights of the
+/// method, whose last weight is kGamma.
 inline constexpr double kA[kStages][kStages] = {
     {},
     {1. / 4},
@@ -35,7 +36,7 @@ inline constexpr double kB3[kStages] = {4586570599. / 29645900160, 0,
 /// Tolerance of the iteration of a stage if the simulation has none, in sizes of the part and radians.
 inline constexpr double kStageTolerance = 1e-11;
 
-/// Returns the weight of a stage in the result of order 4.
+/// Returns the weight of a stage in the result of order 4; the stages are counted from 0.
 inline double weight(int stage) {
   return stage == kStages - 1 ? kGamma : kA[kStages - 1][stage];
 }

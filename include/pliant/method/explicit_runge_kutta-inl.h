@@ -78,8 +78,8 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   powers_.col(stage) = work.power;
 }
 
-/// The rates are valid only if the gains of Baumgarte's terms are equal too; these may depend on the length
-/// of the step.
+/// The rates are valid only if the gains of Baumgarte's terms have not changed either. The gains may depend
+/// on the length of the step.
 PLIANT_INLINE bool ExplicitRungeKutta::end_rates_valid(const Dynamics& dynamics, double t,
                                                        const State& state) const {
   auto gains = [&](double step) {
@@ -159,7 +159,7 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics
                                                         const State& high, StepCounters& counters) {
   const ContinuousExtension& extension = *tableau_->extension;
   const double t = low.time();
-  State modes = high;  // the stages read only the discrete modes
+  State modes = high;  // the stages read only its modes of limits, joints and sleep
   StepContext context(dynamics, modes, extension_work_, counters);
   const int n = tableau_->stages, all = n + 1 + extension.stages;
   if (!end_rates_valid(dynamics, t + h, high)) {
@@ -180,8 +180,9 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics
   return {dynamics.model(), std::move(q)};
 }
 
-/// With two estimates the error is e_1^2 / sqrt(e_1^2 + 0.01 e_2^2), as in DOP853 (Hairer, Norsett & Wanner,
-/// Solving Ordinary Differential Equations I, section II.10).
+/// With two estimates e_1 and e_2, whose weights are `error` and `second_error` of the tableau, the error is
+/// e_1^2 / sqrt(e_1^2 + 0.01 e_2^2), as in DOP853 (Hairer, Norsett & Wanner, Solving Ordinary Differential
+/// Equations I, section II.10).
 PLIANT_INLINE double ExplicitRungeKutta::estimate_error(double h, const VecX<double>& v) {
   const int count = tableau_->stages + (tableau_->rates_at_end ? 1 : 0);
   auto weighted_norm = [&](const double* weights) {

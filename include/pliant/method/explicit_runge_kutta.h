@@ -1,7 +1,8 @@
 // Explicit Runge-Kutta methods with an error estimate (Hairer, Norsett & Wanner, Solving Ordinary
 // Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers by
-// theta_dot = 1/2 theta o (0, omega) and normalised after the step; closed joints are projected. Both keep
-// the order. Free oscillators (free_oscillation.h) are integrated exactly.
+// theta_dot = 1/2 theta o (0, omega) and normalised after the step; closed joints are projected. The
+// normalisation and the projection keep the order. Free oscillators (free_oscillation.h) are integrated
+// exactly.
 #pragma once
 
 #include <vector>
@@ -27,14 +28,15 @@ class ExplicitRungeKutta : public Integrator {
                 StepCounters& counters) override;
 
  private:
-  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, and stores them in the
-  /// columns of a stage.
+  /// Evaluates the rates at (t, q_, v_), with the modes of limits, joints and sleep of step.state, and stores
+  /// the rates in the columns of a stage.
   void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   /// Returns the dense output by the continuous extension of the tableau. Throws StepFailure or
   /// InvertedElement if an additional stage leaves the range of the model.
   StepPath dense_output(const Dynamics& dynamics, const State& low, double h, const State& high,
                         StepCounters& counters);
-  /// Returns whether the rates at the end of the last step are valid at this state and time.
+  /// Returns whether the rates at the end of the last step can be used at this state and time: both are those
+  /// of the end of that step.
   bool end_rates_valid(const Dynamics& dynamics, double t, const State& state) const;
   /// Returns the error of the step, in tolerances. v: the velocities at its start.
   double estimate_error(double h, const VecX<double>& v);

@@ -15,7 +15,8 @@ namespace pliant {
 
 namespace free_oscillation {
 
-/// The functions c and s of exp(A t), for a damped oscillation or an overdamped decay.
+/// The functions c and s of exp(A t): with kappa = sqrt(omega^2 - g^2), c = e^(-g t) cos(kappa t) and s =
+/// e^(-g t) sin(kappa t) / kappa. An overdamped decay has cosh and sinh in their place.
 struct DampedCosSin {
   double c, s;
 };
@@ -38,7 +39,7 @@ inline double integral_of_decay(double rate, double t) {
   return rate == 0 ? t : -std::expm1(-rate * t) / rate;
 }
 
-/// Returns the integral of s from 0 to t; end: c and s at t. The closed form (1 - c - g s) / omega^2 loses
+/// Returns the integral of s from 0 to t. end: c and s at t. The closed form (1 - c - g s) / omega^2 loses
 /// digits for short t.
 inline double integral_of_s(double omega2, double g, double t, const DampedCosSin& end) {
   constexpr double kShort = 0.5;

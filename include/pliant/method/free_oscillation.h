@@ -1,7 +1,7 @@
 // Exact integration of local coordinates that are free oscillators: q_ddot = -omega^2 q - D q_dot + n with a
 // constant load n, the acceleration by all other forces. The modes of a part with joints or strings are not
-// free: rows of joints and strings couple them to stiff motion. The method of integration advances such
-// modes.
+// free: rows of joints and strings couple these modes to other motion, which may be stiff. The method of
+// integration advances them like other coordinates.
 #pragma once
 
 #include <pliant/body/model.h>
@@ -23,7 +23,7 @@ OscillatorPropagator propagator(const Oscillators& oscillators, double t);
 struct VelocityResponse {
   VecX<double> qv, vv;
 };
-/// Returns the response to a change of q_dot after t (s).
+/// Returns the response at t (s) to a unit change of q_dot at time 0, one entry for each oscillator.
 VelocityResponse velocity_response(const Oscillators& oscillators, double t);
 
 }  // namespace pliant

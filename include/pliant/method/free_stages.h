@@ -19,12 +19,12 @@ namespace pliant {
 
 class FreeStages {
  public:
-  /// Prepares steps of length h, s. Returns at once if h has not changed.
+  /// Prepares steps of length h, s. Returns at once if model, tableau and h have not changed.
   void prepare(const Model& model, const ButcherTableau& tableau, double h);
   /// Returns whether the model has free oscillators. Without them all functions return at once.
   bool has_oscillators() const { return !parts_.empty(); }
-  /// Stores the loads n = v_dot - A u of a stage, where v_dot are the accelerations at (q, v). Sets v_dot of
-  /// the free oscillators to zero.
+  /// Stores the loads n = v_dot + omega^2 q + D v of a stage, where v_dot are the accelerations at (q, v).
+  /// Sets v_dot of the free oscillators to zero.
   void store_loads(int stage, const VecX<double>& q, const VecX<double>& v, VecX<double>& v_dot);
   /// Sets q_dot of the free oscillators to zero.
   void clear_rates(VecX<double>& q_dot) const;
@@ -45,13 +45,13 @@ class FreeStages {
     int q0, v0;
     MatX<double> n;  ///< loads: one column for each stage, and one for the end of the step
     std::vector<OscillatorPropagator> from_start;        ///< over c_i h, for each stage and the end
-    std::vector<std::vector<VelocityResponse>> between;  ///< over (c_i - c_j) h, if a_ij is not zero
+    std::vector<std::vector<VelocityResponse>> between;  ///< [i][j]: over (c_i - c_j) h, if a_ij is not 0
   };
   /// Returns the weights of the earlier stages for a stage, or b for the end.
   const double* weights(int stage) const {
     return stage == tableau_->stages ? tableau_->b : tableau_->a + stage * (stage - 1) / 2;
   }
-  /// Adds weight exp(A t) (0, n_stage - n_0); response: the response over t.
+  /// Adds weight exp(A t) (0, n_stage - n_0) to (q, v). response: velocity_response() over t.
   static void add_load_change(const PartStages& part, const VelocityResponse& response, int stage,
                               double weight, VecX<double>& q, VecX<double>& v);
   double node(int stage) const { return stage >= tableau_->stages ? 1 : tableau_->c[stage]; }

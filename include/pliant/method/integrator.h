@@ -27,11 +27,12 @@ class Integrator {
   /// Returns the displacement that a constant force causes in a step, divided by h times the change of
   /// velocity that it causes.
   virtual double reach() const { return 0.5; }
-  /// Sets whether parts that deform locally may touch something in the next steps.
+  /// Sets whether parts that deform locally may touch something in the next steps. Only
+  /// linearly_implicit uses this.
   virtual void expect_touch(bool) {}
-  /// If the flag is true, replaces M^-1 of each implicit part in work by the response of the part to impulses
-  /// over the last step (LocalResponse). If it is false, restores M^-1, which an evaluation needs. work: the
-  /// evaluation at the end of the step.
+  /// If the flag is true, replaces M^-1 of each implicit part (implicit/implicit_part.h) in work by the
+  /// response of the part to impulses over the last step (LocalResponse). If it is false, restores M^-1,
+  /// which an evaluation needs. work: the evaluation at the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }

@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-/// Returns the largest |R(z)| over z = h lambda, for the eigenvalues lambda of the motion. stability: the
-/// function R(z). K: 1/s^2, D: 1/s, n x n each; h: s.
+/// Returns the largest |R(z)| over z = h lambda, for the eigenvalues lambda (1/s) of x'' + D x' + K x = 0.
+/// stability: the function R(z). K: 1/s^2, D: 1/s, n x n each; h: s.
 template <class Stability>
 double linear_growth(const MatX<double>& K, const MatX<double>& D, double h, Stability&& stability) {
   const Eigen::Index n = K.rows();

@@ -85,8 +85,8 @@ PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
     if (has_implicit(island, parts)) factor_joints<double>(model, island, work.parts, work.joints);
 }
 
-/// Records whether a closed string of an island with an implicit part does not pull at this evaluation. Such
-/// a string may still pull later in the step, and the elasticity at one moment cannot decide this.
+/// Sets string_is_slack_ if, at this evaluation, a closed string of an island with an implicit part does not
+/// pull. Such a string may still pull later in the step, and an evaluation at one moment cannot predict this.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
@@ -102,8 +102,8 @@ PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, co
   }
 }
 
-/// Returns whether the step must be repeated with first order: in the step the mode of a string or limit of
-/// an implicit part changed, or a closed string did not pull.
+/// Returns whether the step must be repeated with first order: the mode of a string or limit of an implicit
+/// part changed in the step, or a closed string did not pull. now: the state after the step.
 PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State& now) const {
   if (string_is_slack_) return true;
   for (const Island& island : model.islands())
@@ -198,8 +198,8 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
     q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
     // The errors of rates of implicit parts are multiplied by h (s), so that they measure displacements in
-    // the step. The step damps oscillations faster than h instead of following them, and these oscillations
-    // also move the frames of their parts.
+    // the step. The step damps oscillations that are too fast for h instead of following them, and these
+    // oscillations also move the frames of their parts.
     for (std::size_t i = 0; i < second_order_parts_.size(); ++i) {
       const PartModel& m = model.parts()[i];
       if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
@@ -214,8 +214,8 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
 }
 
 /// Ends the motion and projects strings, limits and joints with the response of implicit parts over a step.
-/// With the response M^-1 at one moment, the projection onto a string or limit would move only the pushed
-/// node, and add energy without bound.
+/// If parts responded by M^-1, as at one moment, the projection onto a string or limit would move only the
+/// pushed node, and add energy without bound.
 PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
   end_motion(step);
   const StepResponses responses(*this, step.model(), step.work);

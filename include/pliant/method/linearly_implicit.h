@@ -47,7 +47,8 @@ class LinearlyImplicit final : public Integrator {
   const ImplicitParts& implicit_parts() const {
     return first_order_ ? first_order_parts_ : second_order_parts_;
   }
-  /// Prepares the implicit parts for the filters of a step. c: gamma h, s.
+  /// Prepares the implicit parts for the filters of a step from the evaluation in step.work; creates them at
+  /// the first call. c: gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
   /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v so that the
   /// rows of joints keep their values (implicit/project_rates.h).
@@ -69,7 +70,7 @@ class LinearlyImplicit final : public Integrator {
   // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
   ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order
   State before_;                                          ///< state from which the step can be repeated
-  Workspace<double> filtered_;                            ///< for project_rates: the metric of the filter
+  Workspace<double> filtered_;                            ///< scratch storage of project_rates()
   VecX<double> q_, v_, q_dot_, q_rate1_, v_rate1_, q_rate2_, v_rate2_;
 };
 

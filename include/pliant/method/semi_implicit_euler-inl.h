@@ -1,5 +1,5 @@
-// Function bodies of semi_implicit_euler.h: velocities, impulses before the coordinates move, coordinates,
-// projection.
+// Function bodies of semi_implicit_euler.h. A step advances the velocities, applies impulses before the
+// coordinates move, advances the coordinates and projects them.
 #pragma once
 
 #include <pliant/method/semi_implicit_euler.h>

@@ -14,10 +14,10 @@ struct Camera {
   double field_of_view = 32;  ///< degrees, from bottom to top
 };
 
-/// Returns a three-quarter view, slightly from above, that contains the whole box with a margin. aspect:
-/// width / height; field_of_view: degrees. An empty box is replaced by the unit cube that stands on the
-/// origin. Throws std::invalid_argument if the box is not finite, aspect is not positive or field_of_view is
-/// not in (0, 180).
+/// Returns a camera that looks at the box obliquely, slightly from above, and shows the whole box with a
+/// margin. The z axis points upwards. aspect: width / height; field_of_view: degrees. An empty box is
+/// replaced by the unit cube that stands on the origin. Throws std::invalid_argument if the box is not
+/// finite, aspect is not positive or field_of_view is not in (0, 180).
 Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect,
                         double field_of_view = Camera().field_of_view);
 

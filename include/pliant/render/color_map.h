@@ -15,8 +15,8 @@ inline constexpr int kMapColors = 11;
 /// Returns the colours in linear light at levels 0, 0.1, ..., 1.
 const std::array<Eigen::Vector3f, kMapColors>& color_map();
 
-/// Returns the sRGB colour (channels in [0, 1]) at a level in [0, 1]. Levels outside have the first or the
-/// last colour.
+/// Returns the sRGB colour (channels in [0, 1]) at a level, the position on the scale from 0 to 1. Levels
+/// outside have the first or the last colour.
 Eigen::Vector3f mapped_color(double level);
 
 }  // namespace pliant

@@ -16,7 +16,8 @@
 namespace pliant {
 
 struct Picture {
-  /// A closed surface. The mesh has world coordinates (m) and must outlive the call that draws it.
+  /// The surface of a part, an obstacle or a plane: closed, or with triangles for both sides. The mesh has
+  /// world coordinates (m) and must outlive the call that draws it.
   struct Body {
     const TriangleMesh* mesh = nullptr;
     Eigen::Vector3f color = {0.8f, 0.8f, 0.8f};

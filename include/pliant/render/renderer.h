@@ -17,9 +17,9 @@ class Renderer {
  public:
   static constexpr int kMaxSide = 8192;  ///< pixels
 
-  /// Opens a GL library. No GL library is loaded before the first renderer or context is constructed. width,
-  /// height: pixels. Throws std::invalid_argument unless both are in [1, kMaxSide], and std::runtime_error if
-  /// no backend opens or none can draw a picture of this size.
+  /// Opens a GL library. No GL library is loaded before the first renderer or context is constructed, or
+  /// probe_gl_backends() is called. width, height: pixels. Throws std::invalid_argument unless both are in
+  /// [1, kMaxSide], and std::runtime_error if no backend opens or none can draw a picture of this size.
   Renderer(int width, int height, GlBackend backend = GlBackend::automatic);
   ~Renderer();
   Renderer(const Renderer&) = delete;

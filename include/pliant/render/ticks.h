@@ -13,7 +13,8 @@ struct Tick {
   double value;
   std::string label;  ///< with as many digits as the step needs
 };
-/// Returns the multiples of tick_step(high - low) in [low, high], in increasing order; at most 12.
+/// Returns the multiples of tick_step(high - low) in [low, high], in increasing order; at most the first 12.
+/// low < high.
 std::vector<Tick> ticks(double low, double high);
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
-// Format version 1.0: magic, version, header length, a Python dictionary padded with blanks to a multiple of
-// 64 bytes. The header always has kHeader bytes, so that the number of rows can be rewritten in place.
+// NumPy's format 1.0: a magic number, the version, the length of the header, and a Python dictionary, padded
+// with blanks to a multiple of 64 bytes. The header always has kHeader bytes, so that the number of rows can
+// be rewritten in place.
 #include <pliant/io/format/npy.h>
 
 #include <algorithm>
@@ -62,7 +63,7 @@ std::size_t read_at(int descriptor, void* bytes, std::size_t size, std::int64_t 
   throw std::runtime_error(path.string() + " is not a table of a recording: " + why);
 }
 
-// Returns the integers of 'shape': (...).
+// Returns the integers of 'shape': (...) in a header.
 std::vector<std::int64_t> parse_shape(const std::string& header, const std::filesystem::path& path) {
   const std::size_t key = header.find("'shape'");
   const std::size_t open = key == std::string::npos ? key : header.find('(', key);
@@ -73,7 +74,7 @@ std::vector<std::int64_t> parse_shape(const std::string& header, const std::file
   for (std::size_t i = open + 1; i <= close; ++i) {
     const char c = header[i];
     if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
-      if (number > std::int64_t{1} << 50) refuse(path, "its header has no sensible shape");
+      if (number > std::int64_t{1} << 50) refuse(path, "its header has an impossible shape");
       number = std::max<std::int64_t>(number, 0) * 10 + (c - '0');
     } else {
       if (number >= 0) shape.push_back(number);
@@ -180,7 +181,7 @@ NpyReader::NpyReader(std::filesystem::path path) : path_(std::move(path)) {
     const std::vector<std::int64_t> shape = parse_shape(header, path_);
     if (shape.empty() || shape.size() > 2)
       refuse(path_, "it has " + std::to_string(shape.size()) + " dimensions");
-    if (shape.size() == 2 && shape[1] > 1 << 28) refuse(path_, "its header has no sensible shape");
+    if (shape.size() == 2 && shape[1] > 1 << 28) refuse(path_, "its header has an impossible shape");
     columns_ = shape.size() == 1 ? kNpyVector : static_cast<int>(shape[1]);
     data_ = static_cast<std::int64_t>(sizeof start + length);
     rows_ = shape[0];

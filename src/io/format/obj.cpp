@@ -1,4 +1,4 @@
-// Writes OBJ text line by line into a block that fits into the cache, and each full block to a file or a
+// OBJ text is written line by line into a block that fits into the cache. Each full block goes to a file or a
 // string.
 #include <pliant/io/format/obj.h>
 

@@ -42,7 +42,7 @@ void WholeFile::become_target(Durable durable) {
   const int status = ::close(descriptor_);
   descriptor_ = -1;
   if (status != 0) throw_file_fault(errno, "write", target_);
-  if (::rename(name_.c_str(), target_.c_str()) != 0) throw_file_fault(errno, "put in place", target_);
+  if (::rename(name_.c_str(), target_.c_str()) != 0) throw_file_fault(errno, "replace or create", target_);
   renamed_ = true;
 }
 

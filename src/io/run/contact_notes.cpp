@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxReported = 10;  // largest number of pairs that are reported per state
 
-/// Returns the name of the second thing of a contact, with its kind, for example "the plane 'floor'".
+/// Returns the kind and the name of the second side of a contact, for example "the plane 'floor'".
 std::string other_side(const Model& model, const Contact& contact) {
   if (contact.b.part >= 0) return "part '" + model.parts()[at(contact.b.part)].part->name() + "'";
   if (contact.plane >= 0) return "the plane '" + model.body().contact.planes[at(contact.plane)].name + "'";

@@ -54,8 +54,7 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// During its lifetime, the longest contact step of a scene is half as long as that of the original
-/// tolerance.
+/// While the object lives, the longest contact step at `tolerance` is half of that at the original tolerance.
 class HalfStepsInContact {
  public:
   HalfStepsInContact(ContactSettings& settings, double tolerance, double original_tolerance)
@@ -72,8 +71,9 @@ class HalfStepsInContact {
   double longest_;
 };
 
-/// Advances a simulation to a time `until` (s): with fixed steps, in equal steps of about `step`; with a
-/// tolerance, in at least two steps, because a step equal to that of the run would show no difference.
+/// Advances a simulation to a time `until` (s). With fixed steps, it takes equal steps of about `step` (s).
+/// With a tolerance, it takes at least two steps, because a step equal to that of the run would show no
+/// difference.
 void step_to(Simulation& simulation, double until, double step) {
   const double now = simulation.time();
   if (!(until > now)) return;

@@ -34,11 +34,11 @@ class NamedRows {
   std::string names_;
 };
 
-/// Relative size below which a difference of two contributions is rounding error.
+/// A difference or a component that is at most this, relative to its contributions, is rounding error.
 constexpr double kCancelled = 1e-9;
 
-/// Returns the number of rows of a joint whose row of C_q is zero. An example is a rod whose ends coincide,
-/// or whose ends are on one part that does not deform between them.
+/// Returns the number of constraint rows of a joint that are zero in C_q. An example is a rod whose ends
+/// coincide, or whose ends are on one part that does not deform between them.
 int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
   int count = 0;
   for (int r = 0; r < joint.rows; ++r) {
@@ -56,7 +56,7 @@ int rows_without_direction(const JointModel& joint, const Workspace<double>& wor
   return count;
 }
 
-/// Returns whether a joint with this gap (m) is open.
+/// Returns whether joint j, whose gap is given (m), is open (Gaps in joint_notes.h).
 bool is_open(const Simulation& simulation, int j, double gap) {
   if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
   const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];
@@ -81,8 +81,9 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 }  // namespace
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
-  // Largest disagreement of a redundant row with the rows that imply it, relative to the acceleration that
-  // the joint requires plus the one that closes a gap of the joint's length.
+  // A joint agrees with the other joints if its disagreement() is at most this, relative to a sum of two
+  // accelerations: the one that the joint requires, and rate^2 times the joint's length, which closes a gap
+  // of that length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();

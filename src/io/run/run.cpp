@@ -121,7 +121,8 @@ void Run::describe(const StableStep& stable) {
   record_.skipped = skipped_work(simulation_->model());
 }
 
-/// Notes a step that is too large, the chosen integrator, the assembly and redundant constraints.
+/// Adds notes on a step that is too large, on the chosen integrator, on the assembly and on redundant
+/// constraints.
 void Run::note_setup(const StableStep& stable) {
   if (scene_->tolerance == 0 && schedule_.step() > stable.step) {
     note("warning: the step of " + number_text(schedule_.step()) +
@@ -138,7 +139,7 @@ void Run::note_setup(const StableStep& stable) {
   note_redundancy();
 }
 
-/// Lists the files that are written during the run in the run record.
+/// Adds to the run record the names of the files that are written during the run.
 void Run::list_files() {
   for (const char* file :
        {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
@@ -251,7 +252,8 @@ void Run::note(const std::string& text) {
   progress_->note(text);
 }
 
-/// Notes redundant constraints, at most once for each change of the set of acting joints.
+/// Adds notes on redundant constraints, if the set of acting joints has changed since the last call; each
+/// text at most once.
 void Run::note_redundancy() {
   std::vector<bool> acting;
   for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
@@ -266,8 +268,8 @@ void Run::note_engagements() {
   reported_impulses_ = simulation_->engage_impulses().size();
 }
 
-/// Notes, once per part, that its parameters rotate its surface so far that elasticity linear in d is no
-/// longer accurate.
+/// Adds a note, once per part, if the parameters of the part rotate its surface so far that elasticity linear
+/// in d is no longer accurate.
 void Run::note_turns() {
   for (const PartModel& m : simulation_->model().parts()) {
     if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || reported_turned_.count(m.part->name()) > 0) continue;

@@ -14,7 +14,7 @@ bool all_digits(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-// Returns the name of the target of a file: "NAME.part-PID-N" is the temporary name of NAME.
+// Returns the final name of a file: NAME for the temporary name "NAME.part-PID-N", else the name itself.
 std::string finished_name(const std::string& name) {
   const std::size_t mark = name.rfind(".part-");
   if (mark == std::string::npos) return name;

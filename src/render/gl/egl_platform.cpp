@@ -1,6 +1,6 @@
-// EGL without a window or a surface: on Mesa's surfaceless platform, or on its software device. The software
-// device is tried last, because it needs two more extensions. Displays are shared by the whole process and
-// are therefore never terminated.
+// EGL without a window or a surface: on Mesa's surfaceless platform, or on its software device. GlContext
+// tries the software device last, because it needs two more extensions. Displays are shared by the whole
+// process and are therefore never terminated.
 #include <array>
 #include <cstdint>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// OSMesa draws into memory and needs no display. Its header is not used, because it includes the old GL
+// OSMesa draws into memory and needs no display. OSMesa's header is not used, because it includes the old GL
 // header. The renderer draws to its own framebuffer object, so the buffer that OSMesa requires is small.
 #include <array>
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// Shading in linear light. The framebuffer stores the square root of the light (see resolve.h), which is
-// cheaper than sRGB and equally accurate in dark areas.
+// The shaders compute in linear light. The framebuffer stores the square root of the light (see resolve.h),
+// which is cheaper than sRGB and equally accurate in dark areas.
 #include "shaders.h"
 
 namespace pliant::shaders {
@@ -130,7 +130,7 @@ uniform vec3 own_color;
 vec3 albedo() { return own_color; }
 )";
 
-// The interpolation of color_map.h.
+// Interpolates the colours of color_map.h at a level.
 const char* const kLevelColor = R"(
 const int kColors = 11;
 uniform vec3 color_map[kColors];

@@ -18,7 +18,7 @@ class NpyWriter {
   /// Creates a file; throws if the file exists. columns: >= 0 (shape (n, columns)) or kNpyVector.
   static NpyWriter create(const std::filesystem::path& path, int columns);
   /// Opens a file and removes all rows after the first `rows` rows. Throws std::runtime_error if the file is
-  /// not a table with these columns or has fewer rows.
+  /// not a table with this number of columns or has fewer rows.
   static NpyWriter resume(const std::filesystem::path& path, int columns, std::int64_t rows);
   ~NpyWriter();
   NpyWriter(NpyWriter&& other) noexcept;

@@ -1,4 +1,5 @@
-// Numbers as text: the shortest decimal text that reads back exactly, independent of the locale.
+// Numbers as text, independent of the locale. append_number() and number_text() give the shortest decimal
+// text that reads back exactly.
 #pragma once
 
 #include <charconv>

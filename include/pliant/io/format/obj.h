@@ -18,10 +18,11 @@ std::string obj_text(const std::vector<NamedMesh>& meshes, const std::string& ma
 /// Returns the text of the material file: one material per mesh, with the name of the mesh.
 std::string mtl_text(const std::vector<NamedMesh>& meshes);
 
-/// Writes an OBJ file (whole or absent). Throws std::system_error.
+/// Writes an OBJ file (whole or absent, see whole_file.h). Throws std::system_error.
 void write_obj(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& material_file = "");
-/// Writes the surface of one part at the current state of a simulation. Creates the folders of the path.
+/// Writes the surface of one part at the current state of a simulation, without a material file. Creates the
+/// folders of the path.
 void write_obj(const std::filesystem::path& path, const Simulation& simulation, const Part& part,
                const Surface& surface);
 

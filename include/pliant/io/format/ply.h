@@ -11,11 +11,11 @@
 namespace pliant {
 
 /// Returns the bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar), part (int:
-/// index of the mesh); then triangles. values: name of a further property with the values of the vertices
-/// (double); empty for none.
+/// index of the mesh); then triangles. values: name of an additional property with the values of the vertices
+/// (double); empty for none. If it is not empty, each mesh must have values.
 std::string ply_bytes(const std::vector<NamedMesh>& meshes, const std::string& values = "");
 
-/// Writes a PLY file (whole or absent). Throws std::system_error.
+/// Writes a PLY file (whole or absent, see whole_file.h). Throws std::system_error.
 void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& values = "");
 

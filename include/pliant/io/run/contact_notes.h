@@ -10,22 +10,22 @@
 
 namespace pliant {
 
-/// Returns the largest ratio of the depth of a contact to the size of its smaller part, at the state of a
-/// simulation; 0 without contact.
+/// Returns the largest ratio of the overlap of a contact to the size of its smaller part, at the state of a
+/// simulation; 0 without an overlap.
 double deepest_share(const Simulation& simulation);
 
 /// Overlaps above this depth, relative to the size of the smaller part, are reported by a note. Smaller ones
 /// appear only as "max_depth" in run.json.
 inline constexpr double kReportedOverlap = 1e-3;
 
-/// Indices of two things in contact: the first part, then the second part, the plane and the obstacle. Two of
-/// the last three are -1.
+/// Indices that name both sides of a contact: the first part, then the second part, the plane and the
+/// obstacle. Two of the last three are -1.
 using TouchingPair = std::array<int, 4>;
 
 /// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation: the
 /// deepest contact of each pair that is not yet in `reported`, with the name of a joint that may prevent the
-/// separation. If there are many, only the deepest ones are listed, with the number of the others. The pairs
-/// are added to `reported`.
+/// separation. If there are more than ten pairs, only the ten deepest are listed, with the number of the
+/// others. All these pairs are added to `reported`.
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
 
 }  // namespace pliant

@@ -20,8 +20,8 @@ struct ErrorEstimate {
   double velocity = 0;             ///< velocity of the frames, m/s
   double angular_velocity = 0;     ///< angular velocity of the frames, rad/s
   double energy = 0;               ///< total energy, J
-  double joint_force = 0;          ///< force of a joint, N
-  double joint_torque = 0;         ///< torque of a joint, N m
+  double joint_force = 0;          ///< force of a joint with equal modes in both runs, N
+  double joint_torque = 0;         ///< torque of such a joint, N m
   double gap = 0;                  ///< largest gap of a closed joint of the run, m
   double tolerance = 0, step = 0;  ///< tolerance and fixed step (s) of the repetition; one of them is 0
 };
@@ -31,8 +31,8 @@ struct ErrorEstimate {
 void require_better_run(const Scene& scene);
 
 /// Repeats a run more accurately and returns the differences. integrator: name of the method of the run;
-/// step: its fixed step, s; run: its recording. threads: number of threads. Throws what Simulation::step()
-/// and require_better_run() throw, and RecordingMismatch.
+/// step: fixed step of the run, s, or 0 with a tolerance; run: recording of the run. threads: number of
+/// threads. Throws what Simulation::step() and require_better_run() throw, and RecordingMismatch.
 ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
                              int threads, Progress& progress);
 

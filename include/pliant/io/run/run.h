@@ -44,13 +44,14 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Steps to the end and writes trajectory.csv. Returns false if `stop` ended the run; the last state is
-  /// then recorded and the run can be resumed. Throws StepFailure (the last good state is then recorded),
-  /// std::system_error.
+  /// Steps to the end and writes trajectory.csv and, if the scene requests them, the tables of contacts.
+  /// Returns false if `stop` ended the run; the last state is then recorded and the run can be resumed.
+  /// Throws StepFailure (the last good state is then recorded), std::system_error.
   bool simulate();
 
   /// Performs a task after the simulation and records its wall time and files in run.json: write("meshes",
-  /// {"meshes/frame_*.obj"}, task).
+  /// {"meshes/frame_*.obj"}, task). If the task throws, the status becomes stopped (for Interrupted) or
+  /// failed, and the exception continues.
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 

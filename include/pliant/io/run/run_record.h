@@ -76,7 +76,7 @@ struct RunRecord {
   void add_file(const std::string& name);
 };
 
-/// Writes run.json (whole or absent). Throws std::system_error.
+/// Writes run.json (whole or absent, see io/format/whole_file.h). Throws std::system_error.
 void write_run_record(const std::filesystem::path& file, const RunRecord& record);
 /// Reads run.json. Throws FileError if there is none, RecordingMismatch if it is damaged.
 RunRecord read_run_record(const std::filesystem::path& file);

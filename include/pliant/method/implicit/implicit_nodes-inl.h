@@ -20,19 +20,20 @@ namespace pliant {
 
 namespace implicit_nodes {
 
-/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet.
-/// Additional mass is then added to S: first kFirstExtraMass times M, and kExtraMassGrowth times more in each
-/// attempt, at most kMaxExtraMass times M.
+/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet. Mass is
+/// then added to S: first kFirstExtraMass times M, and in each further attempt kExtraMassGrowth times the
+/// mass of the attempt before, up to kMaxExtraMass times M.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
-/// Perturbation of the rest shape, in sizes of the part, for the sparsity pattern: no entry of K is zero by
-/// chance.
+/// The sparsity pattern of K is found at the rest shape with perturbed nodes, so that no entry is zero by
+/// chance. Size of the perturbation, in sizes of the part.
 inline constexpr double kPerturbation = 1e-7;
 
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Calls add(row, column, value) for each contribution to the lower triangle of K by the energies of one
-/// kind, at x. entries: scratch storage; its contents are ignored.
+/// Calls add(row, column, value) for each contribution to the lower triangle of K by the energies of the kind
+/// `of`. x: positions or displacements of the nodes, depending on `of`, m. entries: scratch storage; its
+/// contents are ignored.
 template <class Add>
 void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
                     Add&& add) {
@@ -43,7 +44,7 @@ void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x,
     if (entry.row() >= entry.col()) add(entry.row(), entry.col(), entry.value());
 }
 
-/// Returns (K_p + w w^T) dx at positions x.
+/// Returns (K_p + w w^T) dx at positions x (m), with K_p and w of implicit_nodes.h.
 inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<double>& x,
                                     const VecX<double>& dx) {
   VecX<double> f = VecX<double>::Zero(x.size());
@@ -63,7 +64,7 @@ inline std::vector<VecX<double>> dense_terms(const NodalDeformation& local, cons
   return all;
 }
 
-/// Returns the diagonal entry of a column of a lower triangle.
+/// Returns the diagonal entry of column i of a lower triangle.
 inline double& diagonal(SparseMatrix& A, Eigen::Index i) {
   return A.valuePtr()[A.outerIndexPtr()[i]];
 }
@@ -197,7 +198,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
   if (stiffness_changes_ && n_s > 0)
-    factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns between are zero
+    factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns before these are zero
   if (n_dense > 0) factor_->solve(T_.rightCols(n_dense));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_dense).array() -= 1;

@@ -1,18 +1,20 @@
-// The matrix A of a part with nodes: linearised elasticity and damping under the reference conditions
-// W^T d = 0 (include/pliant/part/local/README.md), G = [I, -[s]x, J], W = M G. K is the stiffness over the
-// local coordinates without its dense term w w^T (NodalEnergy::rank_one). K_p is the share of K of energies
-// that depend on positions (NodalEnergy::Of::position). Let r_q, r_v be the given rates, k_q = r_q + c k_v,
-// and v_r = (R^T c_dot, omega, q_s_dot). The changes k_v - r_v are x_d for the local coordinates and x_r for
-// v_r:
+// The matrix A of a part with nodes: linearised elasticity and damping under the reference conditions W^T d =
+// 0 (include/pliant/part/local/README.md), with W = M G and G = [I, -[s]x, J] at the nodes. H0 is the mass
+// matrix of v_r (below) at d = 0. D_r and K_r are its damping and stiffness, which are zero except for q_s. K
+// is the stiffness over the local coordinates without its dense term w w^T (NodalEnergy::rank_one). K_p is
+// the share of K of energies that depend on positions (NodalEnergy::Of::position). Let r_q, r_v be the given
+// rates, k_q = r_q + c k_v, and v_r = (R^T c_dot, omega, q_s_dot). The changes k_v - r_v are x_d for the
+// local coordinates and x_r for v_r:
 //   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - ((c^2 + c beta) K + c^2 w w^T) e - P e_r ]
 //   [ W^T      0             ] [ kappa ] = [ 0                                                         ]
 //   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r e_r - c^2 P^T e                          ]
 //   [ c w^T             -1   ] [ zeta  ]   [ 0                                                         ]
 // with S = (1 + c alpha) M + (c beta + c^2) K sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0,
 // J], e = r_v + r_q / (c + beta) of the local coordinates, and e_r = c^2 r_v + c r_q of the parameters. kappa
-// and zeta are auxiliary. For beta > 0 the terms with w and P are not the exact derivatives; ROS2 does not
-// need them. S is factored once while K is constant. The border, the few columns beside S, is solved with the
-// factor of S, and again at each step if global parameters change W. A stage then costs one sparse solve.
+// and zeta are auxiliary unknowns. For beta > 0 the terms with w and P are not the exact derivatives; ROS2
+// keeps its order for every A. While K is constant, S is factored once. The border, the few columns beside S,
+// is solved with the factor of S: once, or in each step if global parameters change W. A stage then costs one
+// sparse solve.
 #pragma once
 
 #include <memory>
@@ -31,8 +33,8 @@ class ImplicitNodes final : public ImplicitPart {
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
   /// Factors S if c has changed, and at every call if an energy depends on positions. If S kept the stiffness
-  /// at rest of such energies, steps of 10 times the explicit limit would fail for parts that are bent or
-  /// stretched far.
+  /// of such energies at rest, steps ten times as long as the largest stable explicit step would fail for
+  /// parts that are bent or stretched far.
   int prepare(const PartWorkspace<double>& w, double c, double t) override;
   void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) override;
   MatX<double> compliance() const override;
@@ -41,7 +43,7 @@ class ImplicitNodes final : public ImplicitPart {
 
  private:
   const NodalDeformation& local() const { return *part_->local->nodal(); }
-  /// Returns whether the border contains x_r. It does only if there are global parameters.
+  /// Returns whether the border contains x_r: whether the part has dynamic global parameters.
   bool frame_in_border() const { return part_->n_s > 0; }
   /// Computes K_: the stiffness of the energies of displacements, in the sparsity pattern of all energies.
   void make_pattern();
@@ -64,7 +66,7 @@ class ImplicitNodes final : public ImplicitPart {
   VecX<double> zeros_;         ///< n_d zeros
   NodalWorkspace rest_;        ///< the part at rest
   bool stiffness_changes_;     ///< whether an energy depends on positions
-  double c_ = 0;               ///< c of the factor, s; 0: none
+  double c_ = 0;               ///< c of the current factor, s; 0 without a factor
   Eigen::Index analysed_ = 0;  ///< number of entries of the analysed pattern
   std::vector<Eigen::Triplet<double>> entries_;
   SparseMatrix K_, S_;       ///< lower triangles of one pattern: K of the energies of displacements, and S
@@ -75,7 +77,7 @@ class ImplicitNodes final : public ImplicitPart {
   Eigen::PartialPivLU<MatX<double>> core_;
   MatX<double> K_elastic_;   ///< J^T P, a block of K_r
   MatX<double> K_s_, D_s_;   ///< blocks of K_r and D_r of the global parameters
-  MatX<double> H0_inverse_;  ///< used if x_r is not in the border
+  MatX<double> H0_inverse_;  ///< inverse of H0; used if x_r is not in the border
   VecX<double> e_, y_, right_;
 };
 

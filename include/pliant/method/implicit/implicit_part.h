@@ -16,11 +16,12 @@ class ImplicitPart : public LocalResponse {
   /// Prepares the filter for c (s). w: an evaluation of the part at time t (s). Returns the number of
   /// factorisations. Throws NumericalFailure or OutOfMemory if the stiffness cannot be factored.
   virtual int prepare(const PartWorkspace<double>& w, double c, double t) = 0;
-  /// Replaces the entries of this part in v_dot by k_v. q_dot, v_dot: the rates r of all parts. R:
-  /// orientation of the frame of this part, body to world.
+  /// Replaces the entries of this part in v_dot by k_v. q_dot, v_dot: the rates r = (r_q, r_v) of all parts.
+  /// R: orientation of the frame of this part, body to world.
   virtual void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) = 0;
-  /// Returns the change x = k_v - r_v by the last filter(): first of the rates of v_r = (R^T c_dot, omega,
-  /// q_s_dot), then of d_dot at each attachment point of joints (body/constraint/group.h).
+  /// Returns the change x = k_v - r_v by the last filter(): the changes of the rates of v_r = (R^T c_dot,
+  /// omega, q_s_dot), 6 + n_s numbers, and then of d_dot at the attachment points of joints, three numbers
+  /// each (body/constraint/group.h).
   const VecX<double>& change() const { return change_; }
 
  protected:

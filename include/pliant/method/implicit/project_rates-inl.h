@@ -19,7 +19,8 @@ namespace pliant {
 
 namespace rate_projection {
 
-/// Copies the metric of a part: the compliance of the filter, or the mass if the part is explicit (nullptr).
+/// Copies the metric of a part to `filtered`: the inverse of the compliance of an implicit part, or the mass
+/// matrix of an explicit part (`implicit` is nullptr).
 inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double>& w,
                         PartWorkspace<double>& filtered) {
   if (implicit != nullptr) {
@@ -33,8 +34,9 @@ inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows have zero value.
-/// Three passes refine x if the factor of the joints is not accurate.
+/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows (of strings that
+/// pull and limits that push) have zero value. Three passes refine x if the factor of the joints is not
+/// accurate.
 template <int Max>
 void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
              VecMax<double, Max>& x) {

@@ -21,7 +21,7 @@ namespace pliant {
 
 namespace stage_solver {
 
-/// The iteration is slow if each change is more than this fraction of the last one.
+/// The iteration is slow if a change is more than this fraction of the change before it.
 inline constexpr double kSlowContraction = 0.9;
 /// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
@@ -32,7 +32,8 @@ inline constexpr double kFreeIterations = 0.5;
 inline constexpr int kMaxMatrices = 4;
 /// Changes that do not shrink and are at most this, in sizes of the part and radians, are rounding.
 inline constexpr double kRounding = 1e-12;
-/// Size of the differences, relative to the scale of the coordinate.
+/// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
+/// lengths, 1 for others.
 inline constexpr double kDifference = 1e-7;
 /// Largest number of velocities of a cluster, whose matrix is dense.
 inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
@@ -40,7 +41,8 @@ inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
 /// tolerances.
 inline constexpr double kConverged = 0.02;
 
-/// Converts changes of quaternions to rotations (rad, body frame); other coordinates do not change.
+/// Converts changes of coordinates (n_q) to a vector of n_v numbers: changes of quaternions become rotations
+/// (rad, body frame), changes of other coordinates are copied.
 inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& change,
                        VecX<double>& tangent) {
   tangent.resize(model.n_v());
@@ -173,7 +175,8 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
     if (contraction > stage_solver::kSlowContraction &&
         change * scale_->tolerance() <= stage_solver::kRounding)
       return true;
-    // The first change with the matrix is as large as the error of the guess.
+    // With the matrix, the first change is as large as the error of the guess, so the contraction is judged
+    // from the third change on.
     const bool too_slow = has_matrix_ ? i > 1 && contraction > stage_solver::kSlowContraction
                                       : i > 0 && change * std::pow(contraction, max_iterations - 1 - i) >
                                                      stage_solver::kConverged;

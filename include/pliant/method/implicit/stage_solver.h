@@ -1,11 +1,12 @@
 // The solver of implicit stages,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
-// by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.8).
-// The matrix is I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot by q and v. A_q and A_v are
-// computed by difference quotients, once in a step, and only if the iteration without the matrix would cost
-// more. They are computed again if stiff parts turn so far that the matrix no longer helps. Each cluster of
-// parts that joints, springs or mutual torques connect has one matrix, in the frames of the parts, because
-// stiff directions turn with the parts.
+// for Q and V, by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II,
+// section IV.8). r_q and r_v are known from the earlier stages. The matrix is I - c A_v - c^2 A_q, with the
+// derivatives A_q and A_v of v_dot by q and v. A_q and A_v are computed by difference quotients, once in a
+// step, and only if the iteration without the matrix would cost more. They are computed again if stiff parts
+// turn so far that the iteration with the matrix does not converge. Each cluster of parts that joints,
+// springs or mutual torques connect has one matrix, in the frames of the parts, because stiff directions turn
+// with the parts.
 #pragma once
 
 #include <string>
@@ -24,12 +25,12 @@ class StageSolver {
   /// Prepares the stages of a step from the state of the context. The context and the scale must outlive the
   /// stages. c: gamma h of all stages, s. scale: the norm of the changes of the iteration.
   void begin_step(StepContext& step, double c, const ErrorScale& scale);
-  /// Solves the stage at time t (s) for q and v; their values before the call are the first guess. On return
+  /// Solves the stage at time t (s) for q and v, whose values before the call are the first guess. On return
   /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
   /// changes most, if the iteration does not converge.
   void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
-  /// Filters an error estimate by the inverse matrix: components that the step damps away vanish. Without a
-  /// matrix the estimate does not change.
+  /// Multiplies an error estimate by the inverse matrix, so that components that the step damps away vanish.
+  /// Without a matrix the estimate does not change.
   void damp(VecX<double>& q_error, VecX<double>& v_error) const;
 
  private:
@@ -48,8 +49,8 @@ class StageSolver {
   /// Sets one column of A_q or A_v of each cluster to a difference quotient: the change of the accelerations
   /// in the workspace from v_dot_, divided by the difference. difference: differences(column).
   void set_column(Eigen::Index column, const VecX<double>& difference, MatX<double> Cluster::*A);
-  /// Returns the differences for one column of the matrices of all clusters: n_v numbers, one nonzero number
-  /// for each cluster.
+  /// Returns the differences for one column of the matrices of all clusters: n_v numbers, with at most one
+  /// nonzero number for each cluster.
   VecX<double> differences(Eigen::Index column) const;
   /// Allocates the matrices. Throws NumericalFailure, with the time t (s), if a cluster is too large.
   void allocate_matrices(double t);
@@ -58,7 +59,7 @@ class StageSolver {
 
   const Model& model_;
   std::vector<Cluster> clusters_;
-  VecX<double> difference_;  ///< n_v: size of the difference in each coordinate, m, rad or 1
+  VecX<double> difference_;  ///< n_v: step of the difference quotients, m, rad or 1
   int max_free_iterations_;  ///< largest number of iterations of a stage without the matrix
   // The current step.
   StepContext* step_ = nullptr;

@@ -1,15 +1,16 @@
 // The metric of the projection after an implicit step. In the mass metric a projection would move stiff
 // parameters as easily as others, and this small displacement would cause unbounded elastic forces. For parts
 // without local deformation the metric is therefore M plus (c beta + c^2) K_s over q_s, with c = gamma h of
-// the stages: stiff parameters respond to impulses as in a step. The added term acts on q_s alone, so that
-// the linear and the angular momentum do not change.
+// the stages. Stiff parameters then respond to impulses as in a step. The added term acts on q_s alone, so
+// that the linear and the angular momentum do not change.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// While the object lives, impulses on parts act in this metric.
+/// While the object lives, impulses on parts act in this metric. If the state is not finite, the metric does
+/// not change.
 class StiffPushes {
  public:
   /// work: the evaluation of the last stage. state: the state at time t (s). c: gamma h of the stages, s.
