@@ -31,8 +31,8 @@ struct ContactPlane {
 
   bool acts_at(double t) const { return on <= t && t < off; }
   bool acts_before(double t) const { return present_before(t, on, off); }
-  /// Returns the largest height of the plane along its normal, m, in the h seconds after t, sampled at the
-  /// fractions kMoments of this interval (math/time_function.h).
+  /// Returns the largest normal . point, m, from t to t + h (s), sampled at the fractions kMoments of this
+  /// interval (math/time_function.h).
   double highest(double t, double h) const {
     if (point.is_constant()) return normal.dot(point.value(t));
     double largest = -std::numeric_limits<double>::infinity();

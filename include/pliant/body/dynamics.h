@@ -16,8 +16,8 @@ namespace pliant {
 template <class S>
 struct Evaluation;
 
-/// The action of a joint on the part of its first side: force (N) at its first point and torque (N m) about
-/// that point, world.
+/// The action of a joint on the part of its first side: a force (N) at the first point of the joint, and a
+/// torque (N m) about that point, world.
 struct Wrench {
   Vec3<double> force, torque;
 };
@@ -33,7 +33,8 @@ struct JointPolicy {
   bool step_consistent = true;
   /// Whether closed joints are projected after each step; they have no Baumgarte terms then.
   bool projected = false;
-  /// Whether steps may be of first order, which leaves a gap on closing joints that rotate.
+  /// Whether steps may be of first order. On a closing joint that rotates they leave a gap of h |bias| alpha
+  /// / beta^2, so that the joint counts as closed with a larger gap (project/project_joints-inl.h).
   bool first_order = true;
 };
 
@@ -86,10 +87,11 @@ class Dynamics {
   /// dual_work: scratch storage, kept from call to call; its contents are ignored.
   VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const StateDirection& along,
                    const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
-  /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion; all other
-  /// coordinates change with their velocities.
+  /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion, where o is the
+  /// product of quaternions. The rates of all other coordinates are their velocities.
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
-  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts.
+  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts. parts:
+  /// numbers of parts that have coordinates.
   void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
   /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
@@ -98,13 +100,15 @@ class Dynamics {
   /// ignored.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;
-  /// Returns energies, works and momenta of a state; the caller sets the balance.
+  /// Returns energies, works and momenta of a state. Ledger::balance is zero; the caller sets it. work
+  /// receives an evaluation of the accelerations.
   Ledger ledger(const State& state, Workspace<double>& work) const {
     return ledger(state.time(), state, work);
   }
   /// Returns the ledger of the coordinates and velocities of a state at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
-  /// Returns the name of the first term of an evaluation that is not finite; empty if all are finite.
+  /// Evaluates the accelerations and returns the name of the first term that is not finite, in the order of
+  /// the evaluation; an empty text if all terms are finite. Does not evaluate if q or v is not finite.
   std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                        Workspace<double>& work) const;
 

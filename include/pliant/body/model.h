@@ -92,10 +92,10 @@ struct JointModel {
   std::vector<JointSide> sides;
   int island, node;  ///< its island; its number among the equations of the island, -1 for a string
   int island_row;    ///< first row in the rows of the island
-  double length;     ///< size of the smaller of its parts, m
+  double length;     ///< size of the smallest part with coordinates at the joint, m
   bool driven;       ///< whether one of its points has a prescribed motion
-  /// For a joint between two points of one part: start of C_q^T and M^-1 C_q^T of its first side alone; else
-  /// -1.
+  /// For a joint between two points of one part: start of the C_q^T and M^-1 C_q^T that its first side alone
+  /// would have, in the flat arrays; else -1.
   int first_offset = -1;
 };
 
@@ -193,11 +193,11 @@ class Model {
     const PartModel& m = parts_[static_cast<std::size_t>(part)];
     return m.q0 < 0 ? m.motion == nullptr : sleeps(state, part);
   }
-  /// Returns the gap of a joint in a state, m: |C|, or max(0, -C) of a one-sided joint.
+  /// Returns the gap of a joint in a state, m: |C|, or max(0, -C) for a one-sided joint.
   double gap(const State& state, int joint) const;
-  /// Returns the name of an entry of v, for instance "upper.c_dot.x".
+  /// Returns the name of an entry of v, for instance "upper.c_dot.x". Throws std::out_of_range.
   std::string velocity_name(int i) const;
-  /// Returns the name of an entry of q, for instance "upper.bend.angle".
+  /// Returns the name of an entry of q, for instance "upper.bend.angle". Throws std::out_of_range.
   std::string coordinate_name(int i) const;
 
  private:

@@ -28,7 +28,7 @@ struct Workspace;
 
 /// The quantities of a rigid island at an evaluation.
 struct RigidWorkspace {
-  /// Four parts. Lanes without a part repeat the last part.
+  /// Four parts, one in each lane of a Pack. Lanes without a part repeat the last part.
   struct Four {
     Mat3<Pack> R;      ///< orientation, body to world
     Vec3<Pack> omega;  ///< angular velocity, rad/s, body frame
@@ -111,9 +111,9 @@ class RigidIsland {
     int row;
     double length;  ///< JointModel::length, m
   };
-  /// The contribution of two arms of a part to W_c.
+  /// The contribution of two arms of a part to W_c: sign * mobility[pair] of a lane, or its transpose.
   struct Coupling {
-    int pair, lane;
+    int pair, lane;  ///< entry in RigidWorkspace::mobility, and lane of the part
     bool transposed;
     double sign;
     int target;  ///< offset of the block
@@ -146,7 +146,8 @@ class RigidIsland {
   void factor(const Island& island, RankRule rank, const RigidWorkspace& now, BlockFactor<double>& W_c) const;
   /// Computes the forces of the joints and adds their accelerations.
   void apply_joints(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
-  /// Computes the forces in the arms that cancel the rows in now.lambda.
+  /// Replaces the rows in now.lambda by W_c^-1 times these rows, and computes the forces in the arms that
+  /// cancel the rows.
   void solve_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
   /// Returns the changes of the acceleration of the centre of mass and of beta by the forces in the arms.
   std::pair<Vec3<Pack>, Vec3<Pack>> response(const Four& constants, const RigidWorkspace& now) const;
@@ -159,8 +160,8 @@ class RigidIsland {
   void place_arms(const VecX<double>& q, RigidWorkspace& now) const;
   /// Computes the velocities of the points in the arms.
   void set_arm_velocities(const VecX<double>& v, RigidWorkspace& now) const;
-  /// Adds the response to the forces in the arms to coordinates, or `time` (s) times the response to
-  /// velocities.
+  /// displace() adds the response to the forces in the arms to the coordinates. change_velocities() adds
+  /// `time` times this response to the velocities.
   void displace(const RigidWorkspace& now, VecX<double>& q) const;
   void change_velocities(const RigidWorkspace& now, double time, VecX<double>& v) const;
   /// Calls act(k, first entry in q, first entry in v) for each part.
