@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-/// Compressed columns; only the lower triangle of a symmetric matrix is read.
+/// A sparse matrix by compressed columns. The factorisations read only the lower triangle.
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The pivot at which a factorisation stopped.

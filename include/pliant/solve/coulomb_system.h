@@ -22,7 +22,7 @@ struct CoulombResult {
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
   /// Number of clusters for which the search failed: it left a residual above 1e-6 of the largest contact
   /// velocity without impulses (above 1e-2 for clusters with more than 100 contacts or with point masses,
-  /// which converge less).
+  /// which converge more slowly).
   int fallbacks = 0;
 };
 
@@ -91,8 +91,8 @@ class CoulombSystem {
 
  private:
   friend class CoulombCluster;
-  /// A side (3 x size) or a push (size x 3): the velocities x[first] ... of a mover, and the index of its
-  /// numbers.
+  /// A side (3 x size) or a push (size x 3): it refers to the velocities x[first] ... x[first + size - 1] of
+  /// a mover. numbers: the index of its first entry in numbers_.
   struct Term {
     int mover, first, size;
     std::size_t numbers;
