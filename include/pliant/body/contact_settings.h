@@ -71,7 +71,7 @@ struct ContactPair {
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
-/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint
+/// searched for. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint
 /// switches, or the end of a spring or joint, a force, a rest value, a plane or gravity changes.
 struct Sleep {
   double speed = 0;    ///< a part is at rest while its fastest point is slower, m/s; above 0

@@ -72,12 +72,12 @@ class Dynamics {
   void factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<JointMode>& modes, const Island& island, Workspace<double>& work,
                      RankRule rank = RankRule::decide) const;
-  /// Returns the action of a joint on its first side; work as accelerations(t, ...) left it.
+  /// Returns the action of a joint on its first side. work: as accelerations(t, ...) left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const {
     return joint_wrench(t, joint, work, work.joints.lambda);
   }
-  /// Returns the action of a joint for other forces, or impulses, lambda of the rows of all joints; work as
-  /// evaluate_joints() left it.
+  /// Returns the action of a joint for given forces (N) or impulses (N s) lambda of the rows of all joints.
+  /// work: as evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
   /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The sets of parameters that
   /// limits push and of strings that pull are kept constant. Throws std::logic_error for a part that deforms

@@ -168,14 +168,16 @@ class Model {
   State initial_state() const;
   /// Sets State::at_limit of all parameters from their values.
   void note_limits(State& state) const;
-  /// Returns all parameters of a part in a state.
+  /// Returns the values and rates of all parameters of a part in a state; of a part without coordinates, its
+  /// rest values.
   ParameterValues<double> values(const State& state, int part) const;
   /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
   Eigen::Quaterniond orientation(const State& state, int part) const {
     return orientation(state, part, state.time());
   }
-  /// Returns position and orientation for the coordinates of a state at time t (s).
+  /// Returns position and orientation at time t (s) in place of state.time(). For a part without prescribed
+  /// motion, the result does not depend on t.
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
   /// Returns the position of a material point of a part, m, world. Repeated calls are faster with the weights

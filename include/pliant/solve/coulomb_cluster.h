@@ -39,6 +39,9 @@ struct MoverCoupling {
 
 /// Workspace of the search, reused for all clusters.
 struct CoulombScratch {
+  /// For accelerated_sweeps(): the impulses before (now) and after (next) a pair of sweeps, and after the
+  /// previous pair (last); the residuals r = weight (next - now) of both pairs; the scale (weight) of
+  /// impulses to velocities. The columns of dr and dp are the differences of successive r and next.
   struct Sweeps {
     VecX<double> now, next, last, r, last_r, weight;
     MatX<double> dr, dp;

@@ -44,7 +44,7 @@ struct RigidWorkspace {
   };
   bool used = false;      ///< whether the last evaluation used the rigid island
   bool prepared = false;  ///< whether the constants of its parts are in their workspaces
-  Counters counters;      ///< number of evaluations by its kernels
+  Counters counters;      ///< how often its kernels ran
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts
@@ -55,8 +55,9 @@ struct RigidWorkspace {
 
 class RigidIsland {
  public:
-  /// Whether an island can be evaluated as a rigid island: rigid parts without drag, on ball joints whose
-  /// other ends are on parts or fixed in the world, solved by blocks.
+  /// Whether an island can be evaluated as a rigid island. Its parts must be rigid, without drag and with at
+  /// most kMaxArms joints each (rigid_island-inl.h). All its joints must be ball joints between two parts, or
+  /// between a part and a fixed point. The joint system must be solved by blocks.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
