@@ -31,12 +31,14 @@ struct PartModel {
   /// For a part that deforms locally: the points at which joints act, as weights among the nodes. Each point
   /// appears once.
   std::vector<NodeWeights> shared;
-  std::vector<Material<double>> ports;        ///< attachment points: material points at which forces act
-  double drag;                                ///< nu, 1/s
-  VecX<double> rest;                          ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;                 ///< smallest inertia of each velocity, see SymmetricFactor
-  std::vector<Range> limits;                  ///< limits of each dynamic parameter
-  std::vector<PointJet<double>> rigid_ports;  ///< constant jets of the ports of a rigid part
+  std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
+  double drag;                          ///< nu, 1/s
+  VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
+  VecX<double> inertia_floor;           ///< smallest inertia of each velocity, see SymmetricFactor
+  std::vector<Range> limits;            ///< limits of each dynamic parameter
+  /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
+  /// shape s.
+  std::vector<PointJet<double>> rigid_ports;
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally

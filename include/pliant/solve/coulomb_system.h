@@ -54,8 +54,9 @@ class CoulombSystem {
   /// Removes the pushes of the last contact.
   void drop_pushes();
 
-  int movers() const { return static_cast<int>(movers_.size()) - 1; }
-  int size() const { return static_cast<int>(contacts_.size()); }
+  int movers() const { return static_cast<int>(movers_.size()) - 1; }  ///< number of movers
+  int size() const { return static_cast<int>(contacts_.size()); }      ///< number of contacts and single rows
+  /// Number of rows (3, or 1 for a single row), of sides and of pushes of contact k.
   int rows(int k) const { return contacts_[at(k)].rows; }
   int sides(int k) const { return contacts_[at(k)].last_side - contacts_[at(k)].first_side; }
   int pushes(int k) const { return contacts_[at(k)].last_push - contacts_[at(k)].first_push; }
