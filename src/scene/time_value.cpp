@@ -36,7 +36,7 @@ Check key_rule(const char* values) {
 }
 
 Type times() {
-  return array(number(unbounded(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
+  return array(number(unbounded(), "s"), 1).expecting("an array of one or more increasing numbers (s)");
 }
 
 Type formula() {

@@ -321,4 +321,20 @@ TEST_CASE("with error control, impacts are located within the tolerance", "[erro
   CHECK(simulation.step_counters().steps < 40);
 }
 
+TEST_CASE("the norm of an error is NaN if a block is NaN, also before blocks with finite errors",
+          "[adaptive]") {
+  MultiBody body;
+  body.add<Primitive<Sphere>>("first", 1000);
+  body.add<Primitive<Sphere>>("second", 1000);
+  const Simulation simulation(body, "rk4");
+  const ErrorScale scale(simulation.model(), 1e-3);
+  const State& state = simulation.state();
+  VecX<double> q_error = VecX<double>::Constant(state.q.size(), 0.1);
+  const VecX<double> v_error = VecX<double>::Constant(state.v.size(), 0.1);
+  q_error[0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(scale.norm(q_error, v_error, state.v)));
+  CHECK(std::isnan(scale.norm(q_error)));
+  CHECK(scale.worst(q_error, v_error, state.v) == "the position of part 'first'");
+}
+
 }  // namespace error_control_test

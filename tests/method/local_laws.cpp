@@ -184,4 +184,19 @@ TEST_CASE("laws of shells are refused for solids, and laws of solids for shells"
   CHECK_THROWS_WITH(local_law("jelly", {}), test::has_text("there are: membrane"));
 }
 
+TEST_CASE("N20: the largest stable step includes the beta damping of every law", "[local][stable]") {
+  for (const LocalLawInfo& law : all_local_laws())
+    for (const char* method : {"rk4", "semi_implicit_euler"}) {
+      MultiBody body;
+      tumbling(body, law, 0.05);
+      Simulation simulation(body, method);
+      const double h = 0.98 * largest_stable_step(simulation), start = simulation.ledger().energy();
+      CAPTURE(law.name, method, h);
+      CHECK_NOTHROW([&] {
+        for (int i = 0; i < 100; ++i) simulation.step(h);
+      }());
+      CHECK(simulation.ledger().energy() < start);
+    }
+}
+
 }  // namespace local_laws_test

@@ -265,10 +265,11 @@ TEST_CASE("alternatives: the type of the value selects one, and only its errors 
         "or key frames "
         "{\"t\": [...], \"y\": [...]}\n");
   CHECK(spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": {}") ==
-        "s.json:2:58: error: /springs/0/stiffness: missing key \"t\"; expected a non-empty array of "
-        "increasing numbers (s), for example \"t\": [0, 1, "
+        "s.json:2:58: error: /springs/0/stiffness: missing key \"t\"; expected an array of one or "
+        "more increasing numbers (s), for example \"t\": [0, 1, "
         "2]\n"
-        "s.json:2:58: error: /springs/0/stiffness: missing key \"y\"; expected a non-empty array of numbers, "
+        "s.json:2:58: error: /springs/0/stiffness: missing key \"y\"; expected an array of one or more "
+        "numbers, "
         "for "
         "example \"y\": [0, 0.5, 0]\n");
   CHECK(spring_faults(at + "\"to\": \"up\"") ==

@@ -203,7 +203,7 @@ class RungeKutta {
       const double e3 = ((K_ * tableau_.E.row(0).transpose()).array() / scale).square().sum(),
                    e5 = ((K_ * tableau_.E.row(1).transpose()).array() / scale).square().sum();
       const double error = h * e5 / std::sqrt(std::max(1e-300, n * (e5 + 0.01 * e3)));
-      if (!std::isfinite(error)) throw std::runtime_error("not finite");
+      if (!std::isfinite(error)) throw std::runtime_error("the error estimate of a step is not finite");
       const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-30), -1.0 / 8), 0.2, 6.0);
       if (error <= 1) {
         t = final ? end : t + h;

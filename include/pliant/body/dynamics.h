@@ -33,8 +33,8 @@ struct JointPolicy {
   bool step_consistent = true;
   /// Whether closed joints are projected after each step; they have no Baumgarte terms then.
   bool projected = false;
-  /// Whether steps may be of first order. On a closing joint that rotates they leave a gap of h |bias| alpha
-  /// / beta^2, so that the joint counts as closed with a larger gap (project/project_joints-inl.h).
+  /// Whether steps may be of first order. Baumgarte's terms then do not close the gap of a rotating joint
+  /// completely. The joint is closed with the small gap that remains (project/project_joints-inl.h).
   bool first_order = true;
 };
 
@@ -59,8 +59,9 @@ class Dynamics {
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Computes work.v_dot, work.power and the factors of W_c = C_q M^-1 C_q^T alone, for a stage of a method.
-  /// Sleeping parts are skipped, and their fields in work do not change. For rigid islands with closed
-  /// joints, the fields of their parts and joints do not change, or are zero.
+  /// Sleeping parts are skipped, and their fields in work do not change. If all joints of a
+  /// rigid island are closed and projected, the fields of its parts and joints are not computed either. They
+  /// keep values of earlier calls, or zeros.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
              Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Computes frames and attachment points of the parts of an island, and C, C_dot, bias and C_q of its
@@ -76,8 +77,8 @@ class Dynamics {
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const {
     return joint_wrench(t, joint, work, work.joints.lambda);
   }
-  /// Returns the action of a joint for given forces (N) or impulses (N s) lambda of the rows of all joints.
-  /// work: as evaluate_joints() left it.
+  /// Returns the action of a joint for given lambda. lambda: forces (N) of the rows of all joints, or
+  /// impulses (N s), for which the result is an impulse too. work: as evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
   /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The sets of parameters that
   /// limits push and of strings that pull are kept constant. Throws std::logic_error for a part that deforms

@@ -29,7 +29,8 @@ inline std::vector<Material<double>> points_around(const Material<double>& m, co
     if (!part.shell() && at.w + sign * step >= 0 && at.w + sign * step <= 1)
       all.push_back(material_at(at.u, at.v, at.w + sign * step));
   }
-  // At poles, at the centre and on the core of a ring, a change of the angles does not move the point.
+  // More points are needed where a change of an angle does not move the point: v at a pole, both angles at
+  // the centre, and u on the core of a ring.
   if (ring && at.w + step <= 1)
     for (const double turn : {kPi / 2, kPi}) all.push_back(material_at(at.u + turn, at.v, at.w + step));
   if (!ring)
@@ -66,8 +67,10 @@ PLIANT_INLINE FramedPoint framed(const Point& at, const Mat3<double>& axes) {
         chosen = {i, j, k};
       }
   if (chosen[0] < 0)
-    throw std::invalid_argument("part '" + part.name() +
-                                "' has no three independent directions around the point of a joint");
+    throw std::invalid_argument(
+        "part '" + part.name() +
+        "': the material points around the point of a joint are almost in one plane, so they define no axes; "
+        "expected another point");
   FramedPoint framed{{at}, {}};
   Mat3<double> D;
   for (int k = 0; k < 3; ++k) {

@@ -68,18 +68,11 @@ void ErrorScale::visit_velocities(const VecX<double>& v_error, const VecX<double
   }
 }
 
-namespace error_scale {
-/// Returns the larger of two errors, or NaN if the first is NaN.
-inline double larger(double error, double largest) {
-  return error <= largest ? largest : error;
-}
-}  // namespace error_scale
-
 PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<double>& v_error,
                                       const VecX<double>& v) const {
   double largest = 0;
   auto visit = [&](double error, const PartModel&, const char*) {
-    largest = error_scale::larger(error, largest);
+    if (is_larger_error(error, largest)) largest = error;
   };
   visit_coordinates(q_error, visit);
   visit_velocities(v_error, v, visit);
@@ -89,7 +82,7 @@ PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<do
 PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error) const {
   double largest = 0;
   visit_coordinates(q_error, [&](double error, const PartModel&, const char*) {
-    largest = error_scale::larger(error, largest);
+    if (is_larger_error(error, largest)) largest = error;
   });
   return largest / tolerance_;
 }
@@ -99,7 +92,7 @@ PLIANT_INLINE std::string ErrorScale::worst(const VecX<double>& q_error, const V
   double largest = -1;
   std::string block;
   auto visit = [&](double error, const PartModel& m, const char* name) {
-    if (!(error_scale::larger(error, largest) != largest)) return;
+    if (!is_larger_error(error, largest)) return;
     largest = error;
     block = std::string(name) + " of part '" + m.part->name() + "'";
   };

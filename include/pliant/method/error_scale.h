@@ -5,11 +5,17 @@
 // T, with T = 1 s / (1 + r), where r is the fastest rate of the part in these units per second.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include <pliant/body/model.h>
 
 namespace pliant {
+
+/// Returns whether an error is larger than the largest earlier error. NaN is larger than all numbers.
+inline bool is_larger_error(double error, double largest) {
+  return !(error <= largest) && !std::isnan(largest);
+}
 
 /// The smallest and the largest tolerance of a simulation.
 inline constexpr double kLeastTolerance = 1e-12, kGreatestTolerance = 0.1;

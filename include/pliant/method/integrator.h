@@ -54,7 +54,7 @@ class Integrator {
   const ErrorScale* scale() const { return scale_; }
   /// Includes an error, in tolerances, in the next result of take_error().
   void note_error(double error) {
-    if (!(error <= error_)) error_ = error;
+    if (is_larger_error(error, error_)) error_ = error;
   }
   /// Projects limits, strings and joints at the end of a step, for all methods that do not apply impulses
   /// before the coordinates move. The error of the step includes the displacement by the projection or, if a

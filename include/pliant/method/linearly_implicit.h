@@ -6,11 +6,12 @@
 // or modes and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. The
 // difference from the first-order solution u + h k1 estimates the error.
 //
-// An impact on a stiff part needs velocities with which the part really moves, but in ROS2 a displacement is
-// not h times a stiff velocity. If a part that deforms locally may touch something, or if a string or a limit
-// stops it, a step of linearly implicit Euler replaces that of ROS2: gamma = 1 and u+ = u + h k1, of first
-// order. In such a step q+ = q + h q_dot(v+). Impulses on a part change v+ by (I - h A)^-1 M^-1 times the
-// impulse, and q+ by h times this change; their work is that of an inelastic impact.
+// An impact on a stiff part needs velocities v+ that agree with the displacement in the step,
+// q+ - q = h q_dot(v+). A step of ROS2 does not have this property. If a part that deforms locally may touch
+// something, or if a string or a limit stops it, a step of linearly implicit Euler replaces that of ROS2:
+// gamma = 1 and u+ = u + h k1, of first order. This step has the property. Impulses on a part change v+ by
+// (I - h A)^-1 M^-1 times the impulse, and q+ by h times this change; their work is that of an inelastic
+// impact.
 #pragma once
 
 #include <memory>
@@ -62,7 +63,8 @@ class LinearlyImplicit final : public Integrator {
 
   bool touching_ = false;     ///< whether parts that deform locally may touch something
   bool first_order_ = false;  ///< whether the current or last step is one of linearly implicit Euler
-  /// Whether a closed string of an island with an implicit part did not pull at an evaluation of this step.
+  /// Whether at an evaluation of this step a string did not pull, although its mode is JointMode::closed.
+  /// Only strings of islands with an implicit part are checked.
   bool string_is_slack_ = false;
   // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
   ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order

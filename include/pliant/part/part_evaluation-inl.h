@@ -18,11 +18,12 @@ namespace pliant {
 
 namespace detail {
 
-/// Distance below a tip, relative to its z, at which limits along z towards the tip are evaluated.
+/// Some gradients are singular at a tip. They are evaluated below the tip, at z (1 - kBelowTip). Points whose
+/// relative distance from an end of the body is less than kBelowTip are at this end.
 inline constexpr double kBelowTip = 1e-9;
 
-/// Evaluates the positions of material points. Calls store(i, jet, lane) for each point number i, which is in
-/// this lane of the jet. S is the scalar of the jet.
+/// Evaluates the positions of material points, four at a time. Calls store(i, jet, lane) for each point i;
+/// its position is in lane `lane` of the jet. S is the scalar of the jet.
 template <class S, class P, class Store>
 void evaluate_positions(const PartEvaluation& part, const std::vector<Material<double>>& at,
                         const ParameterValues<P>& values, Store&& store) {

@@ -22,8 +22,9 @@ constexpr double kSpacing = 0.4;
 constexpr double kMaxFaceDepth = 0.5;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
-/// A face does not support a point whose distance to another face is less than kNearerShare times its depth,
-/// if the cosine between their normals is above kMinCosine.
+/// A face does not support a point behind it that is nearer to another face. The other face is nearer if the
+/// distance to it is less than kNearerShare times the depth of the point behind the first face. Another face
+/// has this effect only if the cosine between both normals is above kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
 /// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
 /// of the faces that meet there.
@@ -32,8 +33,8 @@ constexpr double kMaxOutsideSine = 1e-3;
 constexpr double kLevelAlongRidge = 3e-6;
 /// Step for the one-sided slopes at a point of a ridge, in sizes.
 constexpr double kSideStep = 1e-7;
-/// Where a part is level along a ridge, its two contacts are this far inside the ends of the level range, in
-/// sizes, where the height is still that of the range.
+/// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
+/// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
@@ -214,8 +215,9 @@ class Search {
       (rate > 0 ? high : low) = middle;
     }
     const double lowest = 0.5 * (low + high);
-    // The slope along the edge changes its sign at the minimum. At a kink the weighted mean of the one-sided
-    // gradients has no slope along the edge.
+    // The slope along the edge changes its sign at the minimum. At a kink, the gradient of the contact is the
+    // weighted mean of both one-sided gradients. The weights are chosen so that its slope along the edge is
+    // zero.
     const double side_step = kSideStep * size_;
     const Vec3<double> before = slope(x(lowest - side_step)), after = slope(x(lowest + side_step));
     const double down = before.dot(e), up = after.dot(e);

@@ -32,8 +32,8 @@ struct PolynomialFields {
   MatX<double> at(const Eigen::Matrix3Xd& X) const { return L.values(X) * T.transpose(); }
 };
 
-/// Returns fields that are orthonormal in the mean over the body, by Cholesky factors of the Gram matrix,
-/// applied twice.
+/// Returns the fields phi = T L: the mean of phi_a phi_b over the body is delta_ab. T is the inverse Cholesky
+/// factor of the Gram matrix of L. A second pass removes the rounding errors of the first.
 PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const BodyRule& rule) {
   PolynomialFields fields{L, MatX<double>::Identity(L.size(), L.size())};
   const VecX<double> weight = rule.volume / rule.volume.sum();

@@ -329,7 +329,7 @@ const Type& parameter_type() {
                  optional("max", number(unbounded(), "m, rad or 1"),
                           "Upper limit of a dynamic parameter.")}})})
           .expecting(
-              "a number, or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
+              "a number or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
               "\"max\"}")
           .defined_as("parameter_value");
   return type;

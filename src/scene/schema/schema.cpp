@@ -57,7 +57,8 @@ std::string array_words(const Type& type) {
     return "an array of " + std::to_string(type.min_count) + " to " + std::to_string(type.max_count) + " " +
            elements;
   }
-  if (type.min_count <= 1) return (type.min_count == 1 ? "a non-empty array of " : "an array of ") + elements;
+  if (type.min_count <= 1)
+    return (type.min_count == 1 ? "an array of one or more " : "an array of ") + elements;
   return "an array of at least " + std::to_string(type.min_count) + " " + elements;
 }
 

@@ -1,4 +1,5 @@
-// Function bodies of implicit_modes.h: a diagonal solve for the modes and a small one for v_r.
+// Function bodies of implicit_modes.h: the diagonal system of the modes, and the small dense system of
+// v_r = (R^T c_dot, omega, q_s_dot).
 #pragma once
 
 #include <pliant/method/implicit/implicit_modes.h>

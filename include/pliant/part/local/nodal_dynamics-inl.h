@@ -530,11 +530,10 @@ PLIANT_INLINE LocalMotion NodalDeformation::motion(const VecX<double>& v_r,
 PLIANT_INLINE LocalDeformation::Bound NodalDeformation::stiffness_bound(const LocalWorkspace& work) const {
   Bound bound;
   for (const auto& energy : energies_) {
-    const bool linear = energy->of() == NodalEnergy::Of::displacement;
-    const double omega2 =
-        linear ? energy->frequency_bound(work.d, inertia_) : energy->frequency_bound(of(work).x, inertia_);
+    const bool of_d = energy->of() == NodalEnergy::Of::displacement;
+    const double omega2 = energy->frequency_bound(of_d ? work.d : of(work).x, inertia_);
     bound.K += omega2;
-    if (linear) bound.D += beta() * omega2;
+    bound.D += beta() * omega2;
   }
   return bound;
 }
