@@ -1,5 +1,5 @@
-// The set-up of a model: the places of parts and joints in the flat vectors, the islands, and the solver of
-// each.
+// The set-up of a model: the places of parts and joints in the flat vectors, the islands, and the joint
+// solver of each island.
 #include <pliant/body/model.h>
 
 #include <algorithm>
@@ -19,9 +19,10 @@ namespace {
 /// Number of multiplications below which the factorisation by blocks is always faster than that of the
 /// augmented matrix.
 constexpr long kCheapBlocks = 10000;
-/// Number of pairs of joints on a part above which the blocks of W_c are not considered.
+/// Number of pairs of joints on common parts, summed over an island, above which the blocks of W_c are not
+/// considered.
 constexpr double kMaxJointPairs = 1e7;
-/// Ratio of the masses of two parts of an island below which solutions are refined.
+/// Ratio of the smallest to the largest mass of the parts of an island below which solutions are refined.
 constexpr double kUneven = 1e-4;
 
 }  // namespace
@@ -371,7 +372,8 @@ void Model::add_couplings(Island& island, const SidesOfParts& sides_of) {
 }
 
 namespace {
-/// Adds the motion of the frame and of the parameters that is contained in the local displacements at time 0.
+/// Adds to the state the motion of the frame and of the parameters that is contained in the local
+/// displacements and their rates at time 0.
 void displace_frame(const PartModel& m, State& state) {
   const Mat3<double> R = m.part->R0().toRotationMatrix();
   if (const VecX<double>& rate = m.local->initial_frame_rate(); rate.size() > 0) {

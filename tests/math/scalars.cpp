@@ -198,7 +198,7 @@ TEST_CASE("random formulas agree on every scalar") {
   }
 }
 
-TEST_CASE("the lanes of a pack have the bits of the scalar") {
+TEST_CASE("each lane of a pack has the bits of the result for a double") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     const RandomFormula f(seed, 10);
     std::mt19937 generator(seed + 1000);

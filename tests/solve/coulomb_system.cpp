@@ -106,7 +106,7 @@ TEST_CASE("impulses on point masses obey Coulomb's law", "[coulomb]") {
   }
 }
 
-TEST_CASE("point masses with more contacts than degrees of freedom are stopped exactly", "[coulomb]") {
+TEST_CASE("point masses with more contacts than degrees of freedom: the search succeeds", "[coulomb]") {
   Draws draws(11);
   for (int trial = 0; trial < 20; ++trial) {
     LineOfMasses line(2 + trial % 9, 3, 5, 0.4, draws);
@@ -116,7 +116,7 @@ TEST_CASE("point masses with more contacts than degrees of freedom are stopped e
   }
 }
 
-TEST_CASE("a mover that no impulse changes is not part of the linear system", "[coulomb]") {
+TEST_CASE("a mover that no impulse changes keeps its velocity", "[coulomb]") {
   CoulombSystem system;
   const int point = system.add_mover(3), carried = system.add_mover(6), loose = system.add_mover(3);
   for (const int other : {carried, loose}) {
@@ -223,7 +223,7 @@ TEST_CASE("impulses also change velocities that no contact uses", "[coulomb]") {
   CHECK((x.tail(kSize)(used) - x_reduced.tail(6)).norm() < 1e-10);
 }
 
-TEST_CASE("nearly equal contacts end an iteration that stalls", "[coulomb]") {
+TEST_CASE("the search ends if it stalls because of nearly equal contacts", "[coulomb]") {
   // A body has four contacts with the ground. A fifth contact is a micrometre from one of them, with a
   // slightly different approach rate that only a huge impulse could equalise.
   CoulombSystem system;

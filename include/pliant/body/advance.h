@@ -6,7 +6,8 @@
 
 namespace pliant {
 
-/// q <- q (+) h v for all parts; h: s. c, q_s and q_d add, theta <- theta o exp(h omega / 2).
+/// Computes q <- q (+) h v for all parts; h: s. c, q_s and q_d increase by h times their velocities. The
+/// quaternions change by theta <- theta o exp(h omega / 2), where o is the product of quaternions.
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
 /// Computes q <- q (+) h v for the frame and the global parameters of one part. v: (c_dot, omega, q_s_dot) of
@@ -30,13 +31,13 @@ VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<co
 /// Returns (c_dot, omega, q_s_dot) of a part from v_r = (R^T c_dot, omega, q_s_dot).
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
-/// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). The velocities of
-/// the nodes change by the response to the impulses, on v_r and at the points of joints, that give the part
-/// its velocities in x.
+/// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). For a part that
+/// deforms locally, impulses on v_r and at the points of its joints would change its velocities to those in
+/// x; the velocities of its local coordinates change by the response to these impulses.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
-/// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by the response to
-/// impulses, as in scatter_velocity().
+/// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by h times the
+/// response to the impulses that cause the velocities x, as in scatter_velocity().
 void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& x,
                   double h, VecX<double>& q);
 

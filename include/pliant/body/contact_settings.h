@@ -31,8 +31,8 @@ struct ContactPlane {
 
   bool acts_at(double t) const { return on <= t && t < off; }
   bool acts_before(double t) const { return present_before(t, on, off); }
-  /// Returns the largest height of the plane along its normal, m, in the h seconds after t, sampled at the
-  /// fractions kMoments of this interval (math/time_function.h).
+  /// Returns the largest normal . point, m, from t to t + h (s), sampled at the fractions kMoments of this
+  /// interval (math/time_function.h).
   double highest(double t, double h) const {
     if (point.is_constant()) return normal.dot(point.value(t));
     double largest = -std::numeric_limits<double>::infinity();
@@ -71,7 +71,7 @@ struct ContactPair {
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
-/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint
+/// searched for. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint
 /// switches, or the end of a spring or joint, a force, a rest value, a plane or gravity changes.
 struct Sleep {
   double speed = 0;    ///< a part is at rest while its fastest point is slower, m/s; above 0

@@ -16,8 +16,8 @@ namespace pliant {
 template <class S>
 struct Evaluation;
 
-/// The action of a joint on the part of its first side: force (N) at its first point and torque (N m) about
-/// that point, world.
+/// The action of a joint on the part of its first side: a force (N) at the first point of the joint, and a
+/// torque (N m) about that point, world.
 struct Wrench {
   Vec3<double> force, torque;
 };
@@ -73,7 +73,7 @@ class Dynamics {
   void factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<JointMode>& modes, const Island& island, Workspace<double>& work,
                      RankRule rank = RankRule::decide) const;
-  /// Returns the action of a joint on its first side; work as accelerations(t, ...) left it.
+  /// Returns the action of a joint on its first side. work: as accelerations(t, ...) left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const {
     return joint_wrench(t, joint, work, work.joints.lambda);
   }
@@ -88,10 +88,11 @@ class Dynamics {
   /// dual_work: scratch storage, kept from call to call; its contents are ignored.
   VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const StateDirection& along,
                    const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
-  /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion; all other
-  /// coordinates change with their velocities.
+  /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion, where o is the
+  /// product of quaternions. The rates of all other coordinates are their velocities.
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
-  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts.
+  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts. parts:
+  /// numbers of parts that have coordinates.
   void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
   /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
@@ -100,13 +101,15 @@ class Dynamics {
   /// ignored.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;
-  /// Returns energies, works and momenta of a state; the caller sets the balance.
+  /// Returns energies, works and momenta of a state. Ledger::balance is zero; the caller sets it. work
+  /// receives an evaluation of the accelerations.
   Ledger ledger(const State& state, Workspace<double>& work) const {
     return ledger(state.time(), state, work);
   }
   /// Returns the ledger of the coordinates and velocities of a state at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
-  /// Returns the name of the first term of an evaluation that is not finite; empty if all are finite.
+  /// Evaluates the accelerations and returns the name of the first term that is not finite, in the order of
+  /// the evaluation; an empty text if all terms are finite. Does not evaluate if q or v is not finite.
   std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                        Workspace<double>& work) const;
 

@@ -31,12 +31,14 @@ struct PartModel {
   /// For a part that deforms locally: the points at which joints act, as weights among the nodes. Each point
   /// appears once.
   std::vector<NodeWeights> shared;
-  std::vector<Material<double>> ports;        ///< attachment points: material points at which forces act
-  double drag;                                ///< nu, 1/s
-  VecX<double> rest;                          ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;                 ///< smallest inertia of each velocity, see SymmetricFactor
-  std::vector<Range> limits;                  ///< limits of each dynamic parameter
-  std::vector<PointJet<double>> rigid_ports;  ///< constant jets of the ports of a rigid part
+  std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
+  double drag;                          ///< nu, 1/s
+  VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
+  VecX<double> inertia_floor;           ///< smallest inertia of each velocity, see SymmetricFactor
+  std::vector<Range> limits;            ///< limits of each dynamic parameter
+  /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
+  /// shape s.
+  std::vector<PointJet<double>> rigid_ports;
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
@@ -92,10 +94,10 @@ struct JointModel {
   std::vector<JointSide> sides;
   int island, node;  ///< its island; its number among the equations of the island, -1 for a string
   int island_row;    ///< first row in the rows of the island
-  double length;     ///< size of the smaller of its parts, m
+  double length;     ///< size of the smallest part with coordinates at the joint, m
   bool driven;       ///< whether one of its points has a prescribed motion
-  /// For a joint between two points of one part: start of C_q^T and M^-1 C_q^T of its first side alone; else
-  /// -1.
+  /// For a joint between two points of one part: start of the C_q^T and M^-1 C_q^T that its first side alone
+  /// would have, in the flat arrays; else -1.
   int first_offset = -1;
 };
 
@@ -168,14 +170,16 @@ class Model {
   State initial_state() const;
   /// Sets State::at_limit of all parameters from their values.
   void note_limits(State& state) const;
-  /// Returns all parameters of a part in a state.
+  /// Returns the values and rates of all parameters of a part in a state; of a part without coordinates, its
+  /// rest values.
   ParameterValues<double> values(const State& state, int part) const;
   /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
   Eigen::Quaterniond orientation(const State& state, int part) const {
     return orientation(state, part, state.time());
   }
-  /// Returns position and orientation for the coordinates of a state at time t (s).
+  /// Returns position and orientation at time t (s) in place of state.time(). For a part without prescribed
+  /// motion, the result does not depend on t.
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
   /// Returns the position of a material point of a part, m, world. Repeated calls are faster with the weights
@@ -193,11 +197,11 @@ class Model {
     const PartModel& m = parts_[static_cast<std::size_t>(part)];
     return m.q0 < 0 ? m.motion == nullptr : sleeps(state, part);
   }
-  /// Returns the gap of a joint in a state, m: |C|, or max(0, -C) of a one-sided joint.
+  /// Returns the gap of a joint in a state, m: |C|, or max(0, -C) for a one-sided joint.
   double gap(const State& state, int joint) const;
-  /// Returns the name of an entry of v, for instance "upper.c_dot.x".
+  /// Returns the name of an entry of v, for instance "upper.c_dot.x". Throws std::out_of_range.
   std::string velocity_name(int i) const;
-  /// Returns the name of an entry of q, for instance "upper.bend.angle".
+  /// Returns the name of an entry of q, for instance "upper.bend.angle". Throws std::out_of_range.
   std::string coordinate_name(int i) const;
 
  private:

@@ -118,7 +118,8 @@ class MultiBody {
   ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
   /// Adds a rectangle without thickness that is solid from both sides. middle: m, world; orientation: of its
   /// frame, to world. The x and y axes of this frame are along the edges; half_x and half_y are its half
-  /// extents (m). Throws std::invalid_argument if a half extent is not positive.
+  /// extents (m). Throws std::invalid_argument unless the half extents are finite and positive, or if the
+  /// name is in use.
   ContactObstacle& plate(std::string name, const Vec3<double>& middle, const Eigen::Quaterniond& orientation,
                          double half_x, double half_y);
 

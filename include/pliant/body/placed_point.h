@@ -1,4 +1,5 @@
-// A point whose position is wanted at many states. Its weights among the nodes of its part are computed once.
+// A point whose position is evaluated at many states. The weights of the point among the nodes of its part
+// are computed once.
 #pragma once
 
 #include <pliant/body/model.h>

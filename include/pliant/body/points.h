@@ -25,14 +25,14 @@ inline Kink first_kink(const Point& point, double after, double until) {
   return motion == nullptr ? Kink() : motion->first_kink(after, until);
 }
 
-/// A material point by its angles (rad) and radius; w = 1 is the surface.
+/// Returns a material point of a part. u, v: its angles, rad; w: from 0 at the centre to 1 on the surface.
 inline Point point(const Part& part, double u, double v, double w = 1) {
   return {&part, material_at(u, v, w), {}, 0};
 }
 inline Point point(const Part& part, const Material<double>& material, double patch = 0) {
   return {&part, material, {}, patch};
 }
-/// A fixed or moving point of the world, m.
+/// Returns a fixed or moving point of the world, m.
 inline Point world(double x, double y, double z) {
   return {nullptr, {}, TimeVector(Vec3<double>(x, y, z)), 0};
 }

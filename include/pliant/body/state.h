@@ -37,9 +37,9 @@ enum class JointMode : std::int8_t {
   slack     ///< a string with C > 0: no force
 };
 
-/// A contact of the last step. Its force is the start value for the contact impulses of the next step (warm
-/// start). Only contacts that share a moving part with others are stored. The rows of limits and strings, and
-/// contacts on single nodes, start at zero.
+/// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
+/// start). Only contacts that share a moving part with others are stored. The impulses of limits, of strings
+/// and of contacts on single nodes start at zero.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
@@ -64,8 +64,9 @@ struct State {
   /// fell asleep together. Empty if parts cannot sleep. Code that moves a sleeping part must wake it.
   std::vector<double> at_rest;
   std::vector<CachedContact> contact_cache;  ///< sorted by `between`
-  /// Number of warm-started steps in a row. After a fixed number the search starts cold, so that forces
-  /// without a cause, for instance of a part wedged between two walls, do not persist.
+  /// Number of successive steps with a warm start. After a fixed number, the contact solver starts from zero
+  /// impulses, so that forces without a cause, for instance of a part wedged between two walls, do not
+  /// persist.
   int contact_cache_age = 0;
 
   double time() const { return start + static_cast<double>(step) * h; }
@@ -79,7 +80,7 @@ inline bool sleeps(const State& state, int part) {
 /// Whether two states have equal sets of sleeping parts; arguments: their State::at_rest.
 bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other);
 
-/// Wakes a part and all parts that fell asleep with it.
+/// Wakes a part and all parts that fell asleep with it. Does nothing if the part is awake.
 void wake(State& state, int part);
 
 /// Returns a hash of all bits of a state.

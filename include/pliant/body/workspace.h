@@ -39,10 +39,12 @@ struct PartWorkspace {
   VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
   /// M is increased by this factor times K_s, for contact pushes on stiff parameters; s^2.
   double stiffening = 0;
-  std::vector<int> pressed;  ///< numbers of the parameters that a limit pushes
-  Counters counters;         ///< how often the kernels of the part ran
+  /// For a part without joints: numbers of the dynamic parameters that a limit pushes. For parts in islands:
+  /// ConstraintWorkspace::pushed.
+  std::vector<int> pressed;
+  Counters counters;  ///< how often the kernels of the part ran
 
-  /// x = M^-1 x.
+  /// Replaces x, n_x forces, by M^-1 x.
   template <class Vector>
   void solve_mass(Vector&& x) const {
     if constexpr (std::is_same_v<S, double>) {
@@ -64,7 +66,8 @@ struct PartWorkspace {
   }
 };
 
-/// M over (c, theta, q_s) of a part.
+/// Returns the mass matrix of v_r of a part, (6 + n_s) x (6 + n_s). For a part that deforms locally, it is
+/// the mass matrix without local displacements.
 inline const MatX<double>& mass_matrix(const PartWorkspace<double>& w) {
   return w.local ? w.local->H0 : w.inertia.M;
 }

@@ -1,5 +1,6 @@
-// A guard that flushes subnormal numbers (below 2e-308) to zero while it exists. Processors are about a
-// hundred times slower on them, and motions that decay along a chain of parts produce many.
+// A guard that flushes subnormal numbers (below 2e-308) to zero while it exists. Arithmetic with
+// subnormal numbers is about a hundred times slower, and motions that decay along a chain of parts produce
+// many of them.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,8 @@ inline constexpr int kSmallStack = 16;
 /// Each level of nesting adds at most five numbers to the stack: a sum, a product, a base and two arguments.
 inline constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
 
-/// Returns the sign of x just after t: the sign of its value, or of the first derivative that is not zero.
+/// Returns the sign of x just after t: that of its value, or, if this is 0, that of the first derivative that
+/// is not zero; 0 if all are zero.
 inline double sign_ahead(const Taylor& x) {
   for (const double a : {x.v, x.d, x.dd}) {
     if (a != 0) return a > 0 ? 1 : -1;
@@ -53,7 +54,8 @@ inline Taylor power(const Taylor& a, const Taylor& b) {
   return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
 }
 
-/// Returns the larger argument for `sign` 1 and the smaller one for -1; NaN if one of them is NaN.
+/// Returns the argument that is larger just after t for `sign` 1, or smaller for -1; NaN if one of them is
+/// NaN.
 inline Taylor choose(const Taylor& x, const Taylor& y, double sign) {
   const Taylor difference = x - y;
   if (std::isnan(difference.v)) return difference;
@@ -67,7 +69,7 @@ inline Taylor step(const Taylor& x, double edge) {
 }
 
 /// Returns 0 up to a, 1 from b on, and between them the quintic whose first and second derivatives vanish at
-/// both ends. With a = b it is a step.
+/// both ends. With a = b the function is a step; with a > b it falls from 1 (up to b) to 0 (from a on).
 inline Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
   if (a.v == b.v) return step(x, a.v);
   const Taylor s = (x - a) / (b - a);

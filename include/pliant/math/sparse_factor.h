@@ -1,9 +1,9 @@
 // An interface for sparse factorisations of symmetric matrices: A = Pᵀ L D Lᵀ P with a fill-reducing ordering
 // P (AMD). A is positive definite, or it is quasi-definite: positive definite in its first rows and negative
-// definite in the others. The matrix of Eq. (14) with a small -δI in its lower block is quasi-definite. D is
-// positive in the first rows and negative in the others. The pattern is analysed once; the values are
-// factored each time they change. The core library contains Eigen's factorisation; pliant::suitesparse adds
-// CHOLMOD's (solve/cholmod_factor.h).
+// definite in the others. The matrix of Eq. (14) with a small negative diagonal as its lower block is
+// quasi-definite. D is positive in the first rows and negative in the others. The pattern is analysed once;
+// the values are factored each time they change. The core library contains Eigen's factorisation;
+// pliant::suitesparse adds CHOLMOD's (solve/cholmod_factor.h).
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-/// Compressed columns; only the lower triangle of a symmetric matrix is read.
+/// A sparse matrix by compressed columns. The factorisations read only the lower triangle.
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The pivot at which a factorisation stopped.

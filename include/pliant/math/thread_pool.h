@@ -1,5 +1,5 @@
-// A pool of threads for loops over parts, or over ranges of the elements of one part. Results do not depend
-// on the number of threads: tasks that run at the same time never add to a shared sum.
+// A pool of threads for loops over parts or islands, or over ranges of the elements of one part. Results do
+// not depend on the number of threads: tasks that run at the same time never add to a shared sum.
 #pragma once
 
 #include <functional>

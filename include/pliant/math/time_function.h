@@ -97,8 +97,8 @@ struct TimeVector {
   /// The mean rate over a time interval, and the largest distance of the rate from this mean, sampled at
   /// kMoments.
   struct Passage {
-    Vec3<double> rate;
-    double beside;
+    Vec3<double> rate;  ///< change / h, in units of the function per second
+    double beside;      ///< in the same units
   };
   /// Returns the passage from t to t + h (s).
   Passage over(double t, double h) const;

@@ -15,9 +15,9 @@ namespace pliant {
 
 namespace detail {
 inline constexpr int kMaxSlideIterations = 200;
-/// Maximum growth factor of the rate of sliding in one iteration, while it has no upper bound.
+/// Maximum growth factor of s = |u_t| / |p_t| in one iteration of slide(), while s has no upper bound.
 inline constexpr double kSlideRateGrowth = 16;
-/// Relative difference of two rates of sliding below which the iteration ends.
+/// Relative difference of two values of s below which the iteration ends.
 inline constexpr double kSameSlideRate = 2 * std::numeric_limits<double>::epsilon();
 /// Relative difference below which W is treated as a multiple of the identity.
 inline constexpr double kIsotropicContact = 1e-11;

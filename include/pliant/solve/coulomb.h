@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// The law of one contact for a given W and many b. The solution is exact to rounding: the contact separates,
-/// sticks or slides, and the rate of sliding is the root of one scalar equation.
+/// sticks or slides. If the contact slides, u_t = -s p_t, and s > 0 is the root of one scalar equation.
 class CoulombLaw {
  public:
   CoulombLaw();

@@ -23,7 +23,8 @@ inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
 /// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
 /// Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPoints = 1e-6;
-/// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation.
+/// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation (0: no
+/// extrapolation).
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
@@ -43,7 +44,7 @@ inline constexpr double kSweepStalled = 0.1;
 /// impulses.
 inline constexpr double kNearWarmStart = 0.1;
 
-/// Maximum number of pairs of sweeps in the extrapolation, and the matrix of their products.
+/// Maximum number of pairs of sweeps in the extrapolation, and the matrix of their scalar products.
 inline constexpr int kMaxSweepHistory = 8;
 using SweepGram =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSweepHistory, kMaxSweepHistory>;
@@ -140,7 +141,7 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   }
 }
 
-/// Returns exact_, or the rounding error of the present impulses as a velocity if that is larger, up to
+/// Returns exact_, or the rounding error of the present impulses as a velocity if that is larger, but at most
 /// acceptable_. This rounding error is large where a light part supports a heavy one.
 PLIANT_INLINE double CoulombCluster::exact_level() const {
   double largest = 0;
@@ -301,8 +302,9 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
-/// If the search fails, for instance because joints and contacts contradict each other, it is repeated with
-/// compliant contacts, for which a solution exists. kCompliantPreference decides between the two results.
+/// Solves the cluster: a single contact directly, others from a warm start or by search(). If the search
+/// fails, for instance because joints and contacts contradict each other, it is repeated with compliant
+/// contacts, for which a solution exists. kCompliantPreference decides between the two results.
 PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
   soften(0);
   if (size_ == 1) {

@@ -14,8 +14,8 @@ namespace detail {
 
 /// A cluster with more contacts than this is large.
 inline constexpr int kManyContacts = 100;
-/// Relative residual of a cluster (in units of the largest initial contact velocity) that is acceptable for a
-/// search that stalls. Above it, the search is repeated with compliant contacts.
+/// Relative residual of a cluster that is acceptable for a search that stalls, in units of the largest
+/// contact velocity without impulses. Above it, the search is repeated with compliant contacts.
 inline constexpr double kAcceptableResidual = 1e-6;
 
 }  // namespace detail
@@ -39,6 +39,9 @@ struct MoverCoupling {
 
 /// Workspace of the search, reused for all clusters.
 struct CoulombScratch {
+  /// For accelerated_sweeps(): the impulses before (now) and after (next) a pair of sweeps, and after the
+  /// previous pair (last); the residuals r = weight (next - now) of both pairs; the scale (weight) of
+  /// impulses to velocities. The columns of dr and dp are the differences of successive r and next.
   struct Sweeps {
     VecX<double> now, next, last, r, last_r, weight;
     MatX<double> dr, dp;
@@ -58,7 +61,8 @@ class CoulombCluster {
   /// number: index of the cluster. The velocities of the system must include the present impulses. enough:
   /// see CoulombSystem::solve.
   CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
-  /// Finds the impulses and stores them in the system; adds the residual and the cost to result.
+  /// Finds the impulses and stores them in the system. Updates the largest residual in result, and adds the
+  /// sweeps and a fallback.
   void solve(CoulombResult& result);
 
  private:

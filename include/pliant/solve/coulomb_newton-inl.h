@@ -1,9 +1,10 @@
 // Newton's method for Coulomb's law at all contacts of a cluster, in the form of Alart and Curnier (1991):
 //   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t.
-// Linearised at each contact with a normal impulse,
+// Here (...)+ is the positive part, and r > 0 is the inverse of the largest diagonal entry of W of the
+// contact. The law of each contact with a normal impulse is linearised:
 //   F + T du + D dp = 0.
-// With the sides S, du = S dx, and the pushes Y, dx = sum Y dp over all contacts, the velocities of the
-// movers change by
+// The sides S give du = S dx, and the pushes Y give dx = sum Y dp over all contacts. The velocities of the
+// movers therefore change by
 //   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
 // The unknowns are velocities and not impulses, because each mover is coupled to few others, often by more
 // contact rows than it has velocities.
@@ -53,8 +54,9 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
 
 }  // namespace detail
 
-/// Linearises the laws of all contacts about the present impulses. Lists the changes that set the impulses of
-/// separating contacts, and tangential impulses of contacts without friction, to zero.
+/// Linearises the laws of all contacts with a normal impulse about the present impulses. Lists the changes
+/// that set to zero the impulses of contacts that separate or have no pushes, and the tangential impulses of
+/// contacts without friction.
 PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
   auto& [open, drop] = scratch_.linear;
   open.clear();

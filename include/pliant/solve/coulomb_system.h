@@ -22,7 +22,7 @@ struct CoulombResult {
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
   /// Number of clusters for which the search failed: it left a residual above 1e-6 of the largest contact
   /// velocity without impulses (above 1e-2 for clusters with more than 100 contacts or with point masses,
-  /// which converge less).
+  /// which converge more slowly).
   int fallbacks = 0;
 };
 
@@ -54,8 +54,9 @@ class CoulombSystem {
   /// Removes the pushes of the last contact.
   void drop_pushes();
 
-  int movers() const { return static_cast<int>(movers_.size()) - 1; }
-  int size() const { return static_cast<int>(contacts_.size()); }
+  int movers() const { return static_cast<int>(movers_.size()) - 1; }  ///< number of movers
+  int size() const { return static_cast<int>(contacts_.size()); }      ///< number of contacts and single rows
+  /// Number of rows (3, or 1 for a single row), of sides and of pushes of contact k.
   int rows(int k) const { return contacts_[at(k)].rows; }
   int sides(int k) const { return contacts_[at(k)].last_side - contacts_[at(k)].first_side; }
   int pushes(int k) const { return contacts_[at(k)].last_push - contacts_[at(k)].first_push; }
@@ -91,8 +92,8 @@ class CoulombSystem {
 
  private:
   friend class CoulombCluster;
-  /// A side (3 x size) or a push (size x 3): the velocities x[first] ... of a mover, and the index of its
-  /// numbers.
+  /// A side (3 x size) or a push (size x 3): it refers to the velocities x[first] ... x[first + size - 1] of
+  /// a mover. numbers: the index of its first entry in numbers_.
   struct Term {
     int mover, first, size;
     std::size_t numbers;

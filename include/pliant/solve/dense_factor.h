@@ -52,8 +52,8 @@ class DenseFactor {
  private:
   static constexpr int kPanel = 4;
 
-  /// Subtracts the product of a panel from two columns to its right, so that each load of the panel serves
-  /// both.
+  /// Subtracts the product of a panel from two columns to its right. Each number of the panel is loaded once
+  /// for both columns.
   void subtract_panel(int first, int j) {
     const auto rows = static_cast<int>(L_.rows()) - j;
     const S *x0 = &scaled_(j, 0), *x1 = &scaled_(j, 1), *x2 = &scaled_(j, 2), *x3 = &scaled_(j, 3);

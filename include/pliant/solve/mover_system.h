@@ -1,6 +1,6 @@
-// The linear system (1 + A) x = b for the velocities of movers that contacts couple. There can be many
-// movers, each coupled to few others. They are eliminated one after the other; the mover with the fewest
-// neighbours is the next.
+// The linear system (1 + A) x = b for the velocities of movers (coulomb_system.h) that contacts couple. There
+// can be many movers, each coupled to few others. The movers are eliminated one after the other; the one with
+// the fewest neighbours is the next.
 #pragma once
 
 #include <vector>
@@ -61,8 +61,10 @@ class MoverSystem {
     int size = 3, row = 0, position = 0;  ///< position: in the order of elimination
     bool uniform = true;                  ///< whether all its remaining neighbours have its size
     std::vector<int> neighbours;  ///< neighbours that remain when it is eliminated, in ascending order
-    std::size_t numbers = 0;      ///< start of its diagonal block; then, for each neighbour, A_kj and A_jk
-    std::size_t targets = 0;      ///< start of the list of blocks that its elimination changes
+    /// Start of the diagonal block of this mover k; then follow, for each neighbour j, the blocks A_kj and
+    /// A_jk.
+    std::size_t numbers = 0;
+    std::size_t targets = 0;  ///< start of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
   /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.

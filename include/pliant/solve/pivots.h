@@ -21,8 +21,8 @@ enum class RankRule {
   /// The dependent rows are those of the previous factorisation, and rows whose relative pivot is at most
   /// Pivots::kRounding. Within a step, joints are slightly open, which makes dependent rows look independent.
   keep,
-  /// A row is dependent if its relative pivot is at most Pivots::kRounding. This rule is for positions next
-  /// to a singular position.
+  /// A row is dependent if its relative pivot is at most Pivots::kRounding. This rule is for configurations
+  /// near a singular one.
   rounding
 };
 

@@ -33,7 +33,8 @@ Mat3<double> axes_of(const Vec3<double>& direction) {
   return axes_along(direction);
 }
 
-/// Returns the axes of the frames at both points; they coincide when the joint is closed.
+/// Returns the axes of the frames at `from` and at `to`, each in the frame of its part. The frames coincide
+/// when the joint is closed; with from_axis, only their first axes coincide.
 std::pair<Mat3<double>, Mat3<double>> axes_of(JointKeys keys, const JointSetting& s) {
   const Eigen::Quaterniond turn =
       s.rotation ? s.rotation->normalized() : orientation(s.to).conjugate() * orientation(s.from);

@@ -7,8 +7,8 @@
 namespace pliant {
 
 namespace {
-/// A joint that switches on within this number of units in the last place after a time switches on at that
-/// time.
+/// A kink at most this number of units in the last place before the time at which a joint switches on counts
+/// as a kink at that time.
 constexpr double kUlps = 8;
 }  // namespace
 

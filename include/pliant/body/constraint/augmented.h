@@ -34,7 +34,7 @@ class AugmentedFactor {
  private:
   const Model* model_;
   const Island* island_;
-  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< [part of the island]: (joint, its side)
+  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< of each part: (joint, its side)
   SparseMatrix K_;
   std::unique_ptr<SparseFactor> factor_;
   bool sound_ = false;

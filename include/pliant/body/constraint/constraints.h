@@ -21,12 +21,14 @@ struct PartWorkspace;
 template <class S>
 struct Workspace;
 
-/// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or C_q x >=
-/// bound for a string.
+/// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or sign *
+/// C_q x >= bound for a string.
 struct OneSidedRow {
   int part;  ///< number of the part in the group; -1: k is the number of a string of the island
   int k;
-  double sign;  ///< 1 at a lower limit and for a string, -1 at an upper limit
+  /// 1 at a lower limit and -1 at an upper limit. 1 for a string; projection also uses -1, to keep a taut
+  /// string from becoming slack.
+  double sign;
   double bound;
   /// Compliance of the row: it may miss its bound by this fraction of the change that its own push causes.
   /// Rows that contradict each other have a solution then.
@@ -47,8 +49,9 @@ class JointFactor {
   /// For a derivative: keeps a reference to the augmented factor of the values, if there is one.
   void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
 
-  /// x = W_c^-1 x, with zeros for dependent rows. A derivative with the augmented matrix treats W_c as
-  /// constant. Its result is exact only after a second solution for the residual; exact() is false then.
+  /// Replaces x by W_c^-1 x, with zeros for dependent rows. A derivative with the augmented matrix treats W_c
+  /// as constant. In this case exact() is false, and the result is exact only after a second solution for the
+  /// residual.
   void solve(VecX<S>& x) const;
   bool exact() const { return values_ == nullptr; }
   /// Returns which rows depend linearly on others.
@@ -123,7 +126,8 @@ void evaluate_and_factor_joints(const Model& model, const Island& island, double
 
 /// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between two points of one part,
 /// returns the sum of the entries that each side alone would have. If the motion of the part cannot move one
-/// point relative to the other, the sides cancel in W_c, and the true entry is rounding relative to this sum.
+/// point relative to the other, the sides cancel in W_c: the true entry is then only a rounding error of this
+/// sum.
 template <class S>
 double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
 
@@ -139,8 +143,9 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
 /// In terms of the paper it is -(gamma - 2 alpha C_dot - beta^2 C).
 template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
-/// Returns |C_q a + wanted| of joint j for the accelerations of an evaluation, m/s^2. It is zero within
-/// rounding, unless rows of the joint depend on rows that contradict them.
+/// Returns |C_q a + wanted| of joint j for the accelerations a of an evaluation, m/s^2; for a one-sided joint
+/// max(0, -(C_q a + wanted)). The result is zero within rounding, unless rows of the joint depend on rows
+/// that contradict them.
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
 /// Returns the power of each kind of work (enum Work) that joints do, W.

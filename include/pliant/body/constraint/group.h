@@ -34,7 +34,7 @@ class Group {
                    });
   }
 
-  int size() const { return size_; }
+  int size() const { return size_; }  ///< length of x
   int parts() const { return island_ == nullptr ? 1 : static_cast<int>(island_->parts.size()); }
   int part(int i) const { return island_ == nullptr ? alone_ : island_->parts[at(i)]; }
   /// First entry of part i of the group in x.

@@ -30,8 +30,8 @@ class OneSidedRows {
     rows_[n_] = row;
     responses_[n_++] = group_.response(row);
   }
-  /// Adds all rows of the group that x violates. Returns whether there is any. bound(row): the bound of a
-  /// row.
+  /// Adds all rows of the group that x violates and that were not added before. Returns whether it added any.
+  /// bound(row): the bound of a row.
   template <class Bound>
   bool add_violated(const Vector& x, Bound&& bound) {
     const std::size_t before = n_;

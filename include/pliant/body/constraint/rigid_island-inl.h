@@ -20,7 +20,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Largest number of joints of a part: the mobilities of all pairs are computed for four parts at once.
+/// Largest number of joints of a part in a rigid island. The number is bounded because the mobilities of all
+/// pairs of joints are computed, for four parts at once.
 inline constexpr int kMaxArms = 16;
 
 /// Whether a joint is a ball joint of two different ends without prescribed motion.

@@ -28,7 +28,7 @@ struct Workspace;
 
 /// The quantities of a rigid island at an evaluation.
 struct RigidWorkspace {
-  /// Four parts. Lanes without a part repeat the last part.
+  /// Four parts, one in each lane of a Pack. Lanes without a part repeat the last part.
   struct Four {
     Mat3<Pack> R;      ///< orientation, body to world
     Vec3<Pack> omega;  ///< angular velocity, rad/s, body frame
@@ -44,7 +44,7 @@ struct RigidWorkspace {
   };
   bool used = false;      ///< whether the last evaluation used the rigid island
   bool prepared = false;  ///< whether the constants of its parts are in their workspaces
-  Counters counters;      ///< number of evaluations by its kernels
+  Counters counters;      ///< how often its kernels ran
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts
@@ -55,8 +55,9 @@ struct RigidWorkspace {
 
 class RigidIsland {
  public:
-  /// Whether an island can be evaluated as a rigid island: rigid parts without drag, on ball joints whose
-  /// other ends are on parts or fixed in the world, solved by blocks.
+  /// Whether an island can be evaluated as a rigid island. Its parts must be rigid, without drag and with at
+  /// most kMaxArms joints each (rigid_island-inl.h). All its joints must be ball joints between two parts, or
+  /// between a part and a fixed point. The joint system must be solved by blocks.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
@@ -111,9 +112,9 @@ class RigidIsland {
     int row;
     double length;  ///< JointModel::length, m
   };
-  /// The contribution of two arms of a part to W_c.
+  /// The contribution of two arms of a part to W_c: sign * mobility[pair] of a lane, or its transpose.
   struct Coupling {
-    int pair, lane;
+    int pair, lane;  ///< entry in RigidWorkspace::mobility, and lane of the part
     bool transposed;
     double sign;
     int target;  ///< offset of the block
@@ -146,7 +147,8 @@ class RigidIsland {
   void factor(const Island& island, RankRule rank, const RigidWorkspace& now, BlockFactor<double>& W_c) const;
   /// Computes the forces of the joints and adds their accelerations.
   void apply_joints(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
-  /// Computes the forces in the arms that cancel the rows in now.lambda.
+  /// Replaces the rows in now.lambda by W_c^-1 times these rows, and computes the forces in the arms that
+  /// cancel the rows.
   void solve_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
   /// Returns the changes of the acceleration of the centre of mass and of beta by the forces in the arms.
   std::pair<Vec3<Pack>, Vec3<Pack>> response(const Four& constants, const RigidWorkspace& now) const;
@@ -159,8 +161,8 @@ class RigidIsland {
   void place_arms(const VecX<double>& q, RigidWorkspace& now) const;
   /// Computes the velocities of the points in the arms.
   void set_arm_velocities(const VecX<double>& v, RigidWorkspace& now) const;
-  /// Adds the response to the forces in the arms to coordinates, or `time` (s) times the response to
-  /// velocities.
+  /// displace() adds the response to the forces in the arms to the coordinates. change_velocities() adds
+  /// `time` times this response to the velocities.
   void displace(const RigidWorkspace& now, VecX<double>& q) const;
   void change_velocities(const RigidWorkspace& now, double time, VecX<double>& v) const;
   /// Calls act(k, first entry in q, first entry in v) for each part.

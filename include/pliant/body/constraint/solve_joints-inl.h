@@ -21,7 +21,8 @@ namespace detail {
 /// accelerate their parts without bound. The accelerations are limited to this multiple of those that
 /// Baumgarte's terms require.
 inline constexpr double kMaxClosingRatio = 30;
-/// Softness of the rows of closing strings beyond that limit: the strings then share the load.
+/// Softness of the rows of closing strings if the accelerations exceed that limit. The strings then share the
+/// load.
 inline constexpr double kClosingSoftness = 1e-3;
 
 /// The joints of an island and the accelerations x of its parts. At first x are the accelerations without

@@ -13,10 +13,10 @@ namespace pliant {
 /// The rule that chooses alpha and beta.
 enum class BaumgarteRule {
   automatic,        ///< step_consistent for semi-implicit Euler, critical for all other methods
-  free,             ///< stab_alpha and stab_beta as given; stab_beta > 0, without it no gap closes
+  free,             ///< alpha = stab_alpha, beta = stab_beta; stab_beta = 0 is an error: no gap would close
   critical,         ///< alpha = beta = rate: from rest C decays as (1 + rate t) e^(-rate t)
-  step_consistent,  ///< r = e^(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): C decays by r per
-                    ///< step
+  step_consistent,  ///< r = e^(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): each step
+                    ///< multiplies C by r
 };
 
 /// The gains of Baumgarte's equation.
@@ -29,7 +29,8 @@ struct Stabilization {
   BaumgarteRule rule = BaumgarteRule::automatic;
   double rate = 10;                      ///< decay rate of a gap, 1/s
   double stab_alpha = 0, stab_beta = 0;  ///< gains of the rule `free`, 1/s
-  /// Largest speed at which a gap closes, in units of rate times the size of the smaller part.
+  /// Largest speed at which the gap of a closing joint closes, in units of `rate` times the size of the
+  /// smaller part.
   double speed = 3;
   /// Whether open joints are assembled before time 0 (project/assemble.h), not during the run.
   bool assemble_first = false;

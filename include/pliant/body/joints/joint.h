@@ -1,9 +1,9 @@
 // A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it connects. The formula of a joint
 // is one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
 //   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
-// bias is C_ddot for constant generalised velocities. It is the second derivative of C along a motion of the
-// points with velocity x_dot and acceleration L_dot v; prescribed points follow their paths. It contains C_tt
-// and C_qt.
+// bias is C_ddot for constant generalised velocities: the second derivative of C along a motion of the points
+// with velocity x_dot and acceleration L_dot v. Prescribed points follow their paths. bias contains C_tt and
+// C_qt.
 #pragma once
 
 #include <array>
@@ -95,8 +95,8 @@ struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::lin
 
 /// A formula on points with axes (Framed) declares
 ///   static constexpr bool framed = true;
-/// It has MaterialFrames `from` and `to`. A side with axes has four points; a side with one point has no
-/// axes. Its formula is
+/// Its second side has axes, a member MaterialFrame `to` and four points. Its first side has either axes, a
+/// member MaterialFrame `from` and four points, or one point without axes. The formula is
 /// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const;

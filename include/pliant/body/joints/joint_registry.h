@@ -1,4 +1,4 @@
-// The joints of scenes by name: those of body/joints/all_joints.h.
+// Makes joints by the names of their types, for scenes. body/joints/all_joints.h lists the types.
 #pragma once
 
 #include <memory>

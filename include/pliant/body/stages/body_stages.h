@@ -34,9 +34,10 @@ void choose_rigid_islands(const Evaluation<S>& e) {
   }
 }
 
-/// Lists the parts that are evaluated before any joint: parts without joints, parts of islands that are not
-/// evaluated with their joints, and parts with loads. Sleeping parts are left out, unless loads act on them
-/// or on their island: the loads need their positions.
+/// Lists the parts that are evaluated before any joint: parts without joints, and all parts of islands that
+/// are not evaluated with their joints. Of a rigid island whose constants are known, only the parts with
+/// loads are listed. Sleeping parts are left out, unless loads act on them or on their island: the loads need
+/// their positions.
 template <class S>
 void list_parts_before_joints(const Evaluation<S>& e) {
   const Model& model = e.model();
@@ -117,7 +118,8 @@ void evaluate_parts(const Evaluation<S>& e) {
   for (RigidWorkspace& rigid : e.work.rigid) rigid.prepared = rigid.prepared || rigid.used;
 }
 
-/// Stage 3, loads, and stage 5 of the parts they act on: f_q = L^T f of springs, forces and torques.
+/// Stage 3 for loads: f_q = L^T f of springs, forces and torques; then stage 5 of the parts on which loads
+/// act.
 template <class S>
 void evaluate_loads(const Evaluation<S>& e) {
   const std::vector<int>& loaded = e.model().loaded_parts();

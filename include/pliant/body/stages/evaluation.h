@@ -38,7 +38,7 @@ struct Evaluation {
   bool uses_rigid(const PartModel& m) const { return uses_rigid(m.rigid_island); }
   /// Whether the parts of an island are evaluated together with its joints, each just before the first joint
   /// that needs it, while both are in the cache. This is impossible with loads, which need the positions of
-  /// all parts first, and with threads, which share the parts.
+  /// all parts first, and with threads, among which the parts are divided.
   bool with_joints(const Island& island) const {
     return dynamics.pool() == nullptr && !island.loaded && !uses_rigid(island);
   }

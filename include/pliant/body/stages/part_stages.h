@@ -195,9 +195,9 @@ void add_drag(const PartModel& m, PartWorkspace<S>& w) {
   }
 }
 
-/// Stage 3, forces of a part without its loads: inertial forces g_q, gravity (m/s^2, world), elasticity and
-/// damping of the global parameters, drag; and those of its local deformation. pool: threads for its
-/// elements.
+/// Stage 3, forces of a part without its loads: inertial forces g_q, gravity, elasticity and damping of the
+/// global parameters, and drag; for a part that deforms locally, also the forces of its local deformation.
+/// gravity: m/s^2, world. pool: threads for the elements of the part.
 template <class S>
 void evaluate_own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w,
                          ThreadPool* pool) {
@@ -262,8 +262,8 @@ inline void factor_part_mass(const Model& model, int i, Workspace<double>& work)
   work.held[static_cast<std::size_t>(i)] = has_inertialess_velocity(w) ? 1 : 0;
 }
 
-/// Computes a_r of a part that deforms locally, followed by d_ddot at its joints, and d_ddot of all its local
-/// coordinates.
+/// For a part that deforms locally, computes w.a_r, followed by the accelerations of d at its joints, and the
+/// second derivatives d_ddot of all its local coordinates.
 inline void accelerate_local(const PartModel& m, PartWorkspace<double>& w, Eigen::Ref<VecX<double>> d_ddot) {
   m.local->accelerations(w.a_r, *w.local, d_ddot);
   if (!m.shared.empty()) {
@@ -275,8 +275,8 @@ inline void accelerate_local(const PartModel& m, PartWorkspace<double>& w, Eigen
   w.local->a_free = w.a_r;
 }
 
-/// Calls act(row) for each parameter of part i of a group that is at a limit and does not move; at_limit: its
-/// modes in State::at_limit.
+/// Calls act(row) for each parameter of part i of a group that is at a limit, has a rate of exactly 0 and has
+/// inertia. at_limit: the entries of the part in State::at_limit.
 template <class Act>
 void for_each_limit_at_rest(const PartModel& m, const std::int8_t* at_limit, const PartWorkspace<double>& w,
                             int i, Act&& act) {

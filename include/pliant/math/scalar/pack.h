@@ -1,4 +1,5 @@
-// Pack: four doubles that a formula evaluates together, so that one evaluation serves four material points.
+// Pack: four doubles that a formula evaluates together, so that one evaluation serves four material points or
+// four rigid parts.
 // The arithmetic maps to the vector units of the target; results do not depend on their width.
 #pragma once
 
