@@ -124,8 +124,9 @@ double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// Returns whether the modes of the mesh near a frequency belong to one degree. From n = 4 on, modes of short
-/// waves are between them. For nu = 0, torsion of degree 2 has the frequency of breathing.
+/// Returns whether the modes of the mesh near the frequency of degree n belong to this degree only. From n =
+/// 4 on, modes of short waves are between them. For nu = 0, torsion of degree 2 has the frequency of
+/// breathing.
 bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }
