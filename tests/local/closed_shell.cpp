@@ -28,6 +28,7 @@ double membrane_value(int n, double nu) {
   return 0.5 * (b - std::sqrt(b * b - 4 * (1 - nu * nu) * (n * n + n - 2)));
 }
 
+/// Returns omega^2 (1/s^2) for Omega^2 = 1.
 double unit(double nu) {
   return kE / (kRadius * kRadius * kDensity * (1 - nu * nu));
 }

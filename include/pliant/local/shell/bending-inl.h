@@ -86,8 +86,8 @@ MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet
       own_inertia_(VecX<double>::Zero(static_cast<Eigen::Index>(edges_.size()))) {
   sheet.check();
   if (!(area_density > 0) || !std::isfinite(area_density))
-    throw std::invalid_argument("the mass of a sheet is " + std::to_string(area_density) +
-                                " kg/m^2; it must be positive and finite");
+    throw std::invalid_argument("the mass of a sheet for each unit of area is " +
+                                std::to_string(area_density) + " kg/m^2; it must be positive and finite");
   n_hinges_ = hinge_batches_.n_elements();
   const int n_triangles = static_cast<int>(mesh.n_triangles());
   for (int t = 0; t < Pack::kLanes * static_cast<int>(triangles_.size()); ++t) {
