@@ -176,8 +176,10 @@ class Projection {
   void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
   /// Projects the velocities onto C_dot = 0; the rate of a parameter at a limit, or of a taut string, may
-  /// only lead away from the bound. Returns the number of impulses on one-sided rows. joints, one_sided: the
-  /// works (J) of the impulses of the joints and of the one-sided rows are added to them.
+  /// only lead away from the bound. Sets State::at_limit of the group, and sets parameters that have passed a
+  /// limit exactly to the limit. Returns the number of impulses on one-sided rows that were not active
+  /// before. joints, one_sided: the works (J) of the impulses of the joints and of the one-sided rows are
+  /// added to them.
   int velocities(double& joints, double& one_sided) {
     rank_ = RankRule::decide;
     int impulses = 0;

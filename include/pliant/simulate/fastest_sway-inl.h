@@ -18,6 +18,7 @@ namespace pliant {
 
 namespace sway {
 
+/// Largest number of vectors of Lanczos' method.
 inline constexpr std::size_t kMaxVectors = 30;
 /// The iteration ends if the norm of the next vector is below this share of the largest norm of an image of
 /// the map: such a vector is rounding.

@@ -241,9 +241,9 @@ PLIANT_INLINE void Simulation::reject_step() {
 }
 
 /// Attempts a step of the length in the state and returns its error. The error of the method includes that of
-/// located impacts. If few bodies rest on each other, or if impacts were not located, step doubling estimates
-/// the error of contact. With many bodies, or with contacts at nodes, this error is not estimated, and the
-/// length of the step is limited instead.
+/// located impacts. If parts rest on each other, or if impacts were not located, step doubling estimates the
+/// error of contact. With many moving parts, or with contacts at nodes, this error is not estimated, and the
+/// length of the step is limited instead (estimate_contact_error).
 PLIANT_INLINE StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();
