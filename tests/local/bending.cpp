@@ -1,5 +1,5 @@
 // Bending by mid-edge normals: exact for constant curvature, zero for rigid motion, convergent on irregular
-// meshes of plates and rolled sheets, and the general laws of energies.
+// meshes of plates and rolled sheets, and the checks of energy_laws.h.
 #include <pliant/local/shell/bending.h>
 
 #include "catch.h"
@@ -198,8 +198,9 @@ TEST_CASE("bending: an irregular sheet rolled to half a cylinder has the energy 
 }
 
 TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sanders", "[local]") {
-  // Displacements w Y along the normal and u grad Y along the sphere rotate normals by (u - w) grad Y: E =
-  // D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
+  // Y is a surface harmonic of degree n. Displacements w Y along the normal and u grad Y along the sphere
+  // rotate normals by (u - w) grad Y. The energy on the unit sphere is E = D/2 b (b - 1 + nu) (u - w)^2 int
+  // Y^2, b = n (n + 1).
   const int n = 2;
   const double b = n * (n + 1), nu = 0.3;
   for (const bool along : {false, true}) {

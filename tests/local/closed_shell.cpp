@@ -28,6 +28,7 @@ double membrane_value(int n, double nu) {
   return 0.5 * (b - std::sqrt(b * b - 4 * (1 - nu * nu) * (n * n + n - 2)));
 }
 
+/// Returns omega^2 (1/s^2) for Omega^2 = 1.
 double unit(double nu) {
   return kE / (kRadius * kRadius * kDensity * (1 - nu * nu));
 }
@@ -124,8 +125,9 @@ double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// Returns whether the modes of the mesh near a frequency belong to one degree. From n = 4 on, modes of short
-/// waves are between them. For nu = 0, torsion of degree 2 has the frequency of breathing.
+/// Returns whether the modes of the mesh near the frequency of degree n belong to this degree only. From n =
+/// 4 on, modes of short waves are between them. For nu = 0, torsion of degree 2 has the frequency of
+/// breathing.
 bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }

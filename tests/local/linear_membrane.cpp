@@ -1,4 +1,4 @@
-// The linear membrane: exact for constant strain, zero for small rotations, and the general laws of energies.
+// The linear membrane: exact for constant strain, zero for small rotations, and the checks of energy_laws.h.
 #include <pliant/local/shell/linear_membrane.h>
 
 #include <Eigen/SparseCholesky>

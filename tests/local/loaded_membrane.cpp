@@ -1,5 +1,5 @@
-// The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the
-// general laws of energies.
+// The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the checks
+// of energy_laws.h.
 #include <pliant/local/shell/loaded_membrane.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/local/local_laws.h>

@@ -1,5 +1,5 @@
 // Membranes for large deformations: their energies against the continuum, rigid motion, the limit of small
-// strain, and the general laws of energies.
+// strain, and the checks of energy_laws.h.
 #include <pliant/local/shell/membrane.h>
 
 #include <pliant/local/shell/linear_membrane.h>

@@ -1,5 +1,5 @@
-// Pressure in closed shells: its resultants, the equilibrium of a rubber balloon, and the general laws of
-// energies.
+// Pressure in closed shells: its resultants, the equilibrium of a rubber balloon, and the checks of
+// energy_laws.h.
 #include <pliant/local/shell/pressure.h>
 
 #include <pliant/local/shell/membrane.h>

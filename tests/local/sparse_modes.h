@@ -66,7 +66,8 @@ struct Modes {
   MatX<double> vectors;
 };
 
-/// Returns the `wanted` modes nearest to the shift, which must not be an eigenvalue.
+/// Returns the `wanted` modes nearest to the shift, which must not be an eigenvalue. spare: number of
+/// additional vectors in the iteration, which make it converge faster.
 inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int wanted, int spare = 8) {
   const Sparse A = K - shift * M;
   const Eigen::SimplicialLDLT<Sparse> factor(A);

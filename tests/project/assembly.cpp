@@ -22,7 +22,7 @@ using test::widest_gap;
 namespace {
 
 /// Adds a random tree of ellipsoids on ball joints. Its first part is joined to the world; the parts start in
-/// random poses, up to `apart` body lengths from each other along each axis.
+/// random poses, up to `apart` body lengths (1 m) from each other along each axis.
 void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) {
   Draws draws(seed);
   body.stabilization.assemble_first = true;
@@ -253,7 +253,8 @@ TEST_CASE("a part that spins freely keeps its spin while a joint of its island c
     const double L = simulation.ledger().angular_momentum[2];
     test::run(simulation, 1, 100);  // 0.3 rad a step
     CHECK(simulation.state().v[5] == Approx(30).epsilon(1e-9));
-    CHECK(std::abs(simulation.ledger().work[static_cast<int>(Work::baumgarte)]) < 0.1);  // of 7.5 J
+    CHECK(std::abs(simulation.ledger().work[static_cast<int>(Work::baumgarte)]) <
+          0.1);  // J; the kinetic energy is 7.5 J
     CHECK(simulation.ledger().angular_momentum[2] > 0.99 * L);
   }
 }

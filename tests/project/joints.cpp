@@ -182,7 +182,7 @@ void open_and_turning(MultiBody& body) {
   body.stabilization.projection = false;
 }
 
-/// Returns C x lambda of the first joint.
+/// Returns C x lambda of the first joint: the torque (N m) of its two forces, whose points are C apart.
 Vec3<double> torque(const Simulation& simulation) {
   Workspace<double> work;
   const State& s = simulation.state();
@@ -228,14 +228,15 @@ TEST_CASE("N37: while a joint is open, P is conserved and dL/dt is the torque of
 }
 
 TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]") {
-  // An ellipsoid hangs from the tip of its long axis: l = I_O / (m r).
+  // An ellipsoid hangs from the tip of its long axis, the point O. The equivalent length is l = I_O / (m r),
+  // with I_O the moment of inertia about O and r the distance of the centre from O.
   const double r = 0.3, l = (0.09 + 0.01) / (5 * r) + r;
   for (const double degrees : {30, 60, 90, 120, 150}) {
     const double theta = degrees * kPi / 180, period = 4 * std::sqrt(l / 9.81) * test::elliptic_K(theta);
     MultiBody body;
     Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
     part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
-    // Its long axis points down when theta is 0.
+    // The long axis of the part points down when theta is 0.
     const Eigen::Quaterniond R(Eigen::AngleAxisd(kPi / 2 - theta, Vec3<double>::UnitY()));
     part.place(R * Vec3<double>(0.3, 0, 0), R);
     body.ball("pivot", world(0, 0, 0), point(part, 0, kPi));

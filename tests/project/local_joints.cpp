@@ -176,7 +176,7 @@ TEST_CASE("a rubber balloon with a pressure that no stretch can balance is repor
     what = failure.what();
   }
   CHECK_THAT(what, test::has_text("part 'balloon' has burst"));
-  CHECK_THAT(what, test::has_text("no balance"));
+  CHECK_THAT(what, test::has_text("does not balance"));
 }
 
 TEST_CASE("an element that is inverted at time 0 stops the run with the name of its part", "[local]") {

@@ -21,7 +21,7 @@ using test::Draws;
 
 namespace {
 
-constexpr double kLength = 0.1;  // length of the shots, m
+constexpr double kLength = 0.1;  // length of the shots (the moving parts), m
 constexpr double kThin = 0.01;   // thickness of the plates, m
 const char* const kTargets[] = {"plane", "mesh", "plate", "body"};
 

@@ -44,7 +44,7 @@ void walls(MultiBody& body, double width) {
   body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
   body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
 }
-/// Adds five layers between four walls; each ball is in the dent of four balls below.
+/// Adds five layers between four walls; each ball is in the hollow between four balls below.
 void pack(MultiBody& body, int across) {
   for (int k = 0; k < 5; ++k) {
     const double in = kRadius * (1 + k % 2);

@@ -51,7 +51,7 @@ TEST_CASE("N58: a moving plane that appears in a ball does the work that the bal
         for (int i = 0; i < 600; ++i) {
           const double before = simulation.state().q[2];
           simulation.step(h);
-          // One size a second, in addition to the velocity after the impulse.
+          // The separation adds at most one size a second to the velocity after the impulse.
           REQUIRE(simulation.state().q[2] - before <= h * (v + kRadius) * (1 + 1e-9));
           REQUIRE(simulation.state().v[2] <= v * (1 + 3e-11));
           REQUIRE(work(simulation.ledger(), Work::contact) <= energy * (1 + 3e-11));

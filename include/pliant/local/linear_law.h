@@ -1,4 +1,4 @@
-// Linear elasticity. From the displacement gradient H, with eps = (H + H^T)/2,
+// Linear elasticity. From the displacement gradient H = dd/dX, with eps = (H + H^T)/2,
 //   W = lambda/2 (tr eps)^2 + mu eps:eps,   P = lambda tr(eps) I + 2 mu eps.
 // W: energy for each unit of rest volume, J/m^3. P: stress, Pa.
 #pragma once
@@ -10,8 +10,9 @@
 namespace pliant {
 
 /// Every material law, here and in local/solid, has these members: `of`, the argument of the energy;
-/// `constant`; density(), which returns W; stress(), which returns P = dW/dH (dW/dF for large deformation);
-/// stress_along(), which returns the derivative of P along dH. T: double, Pack or a dual number.
+/// `constant`, see below; density(), which returns W; stress(), which returns P = dW/dH (dW/dF for large
+/// deformation); stress_along(), which returns the derivative of P along dH. T: double, Pack or a dual
+/// number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
   /// Whether the derivative of P does not depend on the gradient.

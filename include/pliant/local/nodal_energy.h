@@ -33,13 +33,13 @@ class NodalEnergy {
   /// Returns whether E(Q d) = E(d) for every rotation Q of all displacements. Such an energy stays correct
   /// where a global deformation has rotated the material locally.
   virtual bool isotropic() const { return false; }
-  /// Returns the inertia of the energy's own coordinates, which follow those of the nodes in x. The result is
-  /// empty for most energies.
+  /// Returns the inertia of the energy's own coordinates, which follow those of the nodes in x; kg m^2 if
+  /// they are angles. The result is empty for most energies, which have no own coordinates.
   virtual VecX<double> own_inertia() const { return {}; }
 
   /// Returns E, J.
   virtual double energy(const Coordinates& x) const = 0;
-  /// Adds the force -dE/dx to f, N. pool may be nullptr.
+  /// Adds the force -dE/dx to f: N at nodes, N m on own coordinates that are angles. pool may be nullptr.
   virtual void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const = 0;
   /// Adds the derivative of the force along dx to f: f -= K(x) dx with K = d2E/dx2.
   virtual void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,

@@ -81,7 +81,8 @@ T determinant(const Mat3<T>& A, const Mat3<T>& cofactors_of_A) {
   return A(0, 0) * cofactors_of_A(0, 0) + A(0, 1) * cofactors_of_A(0, 1) + A(0, 2) * cofactors_of_A(0, 2);
 }
 
-/// Returns the smallest lane, or NaN if a lane is NaN. A double has one lane.
+/// Returns the smallest lane. A double has one lane. The result is NaN only if the last lane is NaN: a NaN in
+/// an earlier lane is lost.
 inline double least_of(double x) {
   return x;
 }

@@ -20,26 +20,31 @@ namespace pliant {
 
 namespace assembly {
 
-/// Largest rotation of a part in one step, rad, and largest change of a parameter: relative for lengths,
-/// absolute for other parameters.
+/// Largest rotation of a part in one step of the iteration, rad, and largest change of a parameter: relative
+/// for lengths, absolute for other parameters.
 inline constexpr double kMaxRotation = 0.5, kMaxChange = 0.3;
 /// The cost of rigid motion: eps, in units of the smallest ratio of stiffness to inertia.
 inline constexpr double kRigidFirst = 1e-6;
-/// The shape has converged if a step changes rotations (rad) and parameters by less than this.
+/// The shape has converged if a step changes rotations (rad) and parameters by less than this. A smaller
+/// relative decrease of the merit counts as none.
 inline constexpr double kConverged = 1e-9;
 /// Merits of closed configurations are equal within this relative difference.
 inline constexpr double kEqualMerit = 1e-12;
-/// Gap, in lengths of the joint, that the projection at the start of the run closes without loss of accuracy.
+/// Gap, in lengths of the joint (JointModel::length, the size of its smaller part), that the projection at
+/// the start of the run closes without loss of accuracy.
 inline constexpr double kProjectedGap = 1e-9;
 inline constexpr int kMaxIterations = 400;
 /// An island cannot close if its gap does not decrease below kProgress of its value in kPatience iterations
-/// and, if any parameter has a stiffness, the merit does not decrease either.
+/// and, if any parameter has a stiffness, the merit does not decrease either. kMaxHalvings: largest number of
+/// times that the line search halves a step. kMaxAttempts: largest number of times that one step is computed
+/// again with a larger cost of rigid motion.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
 /// Largest number of joints that a message names, without the one with the largest gap.
 inline constexpr int kMaxNamed = 8;
 /// If a step is longer than kMaxStepSize allowed steps, and all gaps are below kNearGap lengths, the cost of
-/// rigid motion rises by kCostIncrease. An accepted step reduces it by kCostDecrease.
+/// rigid motion is multiplied by kCostIncrease. A step that is accepted at the first attempt divides the cost
+/// by kCostDecrease.
 inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCostDecrease = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -83,7 +88,8 @@ class Assembly {
   /// Returns whether the shape converged within kMaxIterations.
   bool converged() const { return converged_; }
 
-  /// Iterates to closed gaps and a converged shape; returns the number of iterations.
+  /// Iterates to closed gaps and a converged shape; returns the number of iterations. Throws
+  /// UnsatisfiableModel if the gaps do not close, and NumericalFailure if a gap is not finite.
   int run() {
     double best_gap = kInfinite, best_merit = kInfinite, last_penalty = penalty_;
     int since_gap = 0, since_merit = 0;
@@ -179,9 +185,9 @@ class Assembly {
     }
   }
 
-  /// Makes one step; returns its largest rotation or relative change of a parameter. If rigid motion cannot
-  /// close the gaps, as in a straight chain that is too short, its cost rises for some steps, so that the
-  /// parameters change more.
+  /// Makes one step; returns the largest rotation or relative change of a parameter. If rigid motion cannot
+  /// close the gaps, as in a straight chain that is too short, the cost of rigid motion rises for some steps,
+  /// so that the parameters change more.
   double step(double largest) {
     double size = 0;
     for (int attempt = 0;; ++attempt) {
@@ -214,7 +220,7 @@ class Assembly {
     }
   }
 
-  /// Returns the step of the linearised problem.
+  /// Returns the step of the linearised problem. largest: the largest gap, in lengths of its joint.
   VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double largest) {
     make_metric(1 + largest * largest);
     work_.joints.modes = modes_;

@@ -1,8 +1,9 @@
 // Assembly before time 0: joins parts that are far apart, rotated and deformed. Inertial forces play no part.
 // Each step solves this problem, linearised: minimise
 //   1/2 (q_s - rest)^T K_s (q_s - rest) + eps/2 |delta|_M^2   subject to   C = 0, Eq. (12).
-// The cost eps of rigid motion is small, so that rigid motion comes first, and the parameters change only by
-// as much as their stiffness allows. Rotation costs more while gaps are wide.
+// delta is the step of (c, theta, q_s), and |delta|_M^2 = delta^T M delta. The cost eps of rigid motion is
+// small, so that rigid motion comes first, and the parameters change only by as much as their stiffness
+// allows. Rotation costs more while gaps are wide.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -16,8 +17,10 @@ struct AssemblyReport {
   double gap = 0;         ///< largest gap after, m
 };
 
-/// Assembles the islands in which an acting joint is open. The coordinates of other islands keep all their
-/// bits. Throws UnsatisfiableModel with the name of the joint that cannot close.
+/// Assembles the islands (groups of parts that joints connect) in which an acting joint has a gap above
+/// kClosedGap. The coordinates of other islands keep all their bits. Sets State::at_limit of all parameters.
+/// Throws UnsatisfiableModel with the name of the joint that cannot close, and NumericalFailure if a gap is
+/// not finite.
 AssemblyReport assemble(const Dynamics& dynamics, State& state);
 
 }  // namespace pliant

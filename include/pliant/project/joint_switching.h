@@ -14,7 +14,7 @@ namespace pliant {
 struct ImpulseOnEngage {
   double time;           ///< s
   int joint;             ///< number in the model
-  Wrench impulse;        ///< N s and N m s, about its first point
+  Wrench impulse;        ///< N s and N m s, world, about the first point of the joint
   bool of_path = false;  ///< whether the rate of a path jumped
 };
 
@@ -29,10 +29,11 @@ class JointSwitching {
 
   /// Returns t (s), or the time just after a kink of a path if one is within the tolerance (s) of t.
   double after_kink(double t, double tolerance) const;
-  /// Engages and releases the joints that begin or stop acting at step.t. Times within the tolerance (s) are
-  /// equal.
+  /// Engages and releases the joints that begin or stop acting at step.t, and wakes their islands. Times
+  /// within the tolerance (s) are equal. Does nothing if the state is not finite.
   void switch_at(StepContext& step, double tolerance);
-  /// Engages the joints of the islands that are marked.
+  /// Engages the closing joints of the islands that are marked, and records the impulses. islands: one mark
+  /// for each island of the model.
   void engage(StepContext& step, const std::vector<bool>& islands);
   /// Applies the impulses at a kink (s) of prescribed paths and at kinks within the tolerance (s) of it.
   /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed

@@ -17,13 +17,15 @@ namespace pliant {
 
 namespace projection {
 
-/// The iteration ends if it leaves more than this share of the gaps: the remaining gaps are rounding.
+/// The iterations end if one of them leaves more than this share of the gaps: the remaining gaps are
+/// rounding.
 inline constexpr double kStalledAhead = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxRotationClosing = 0.2;
 
-/// Closes the gaps of an island that was last evaluated as a rigid island. If that fails, evaluates the
-/// island by the general solver and returns false.
+/// Changes the velocities of an island of rigid parts on ball joints so that its gaps are closed at the end
+/// of the step, and returns true. Returns false if the last evaluation of the island did not use RigidIsland.
+/// If the iteration fails, evaluates the island by the general solver and returns false.
 inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island, VecX<double>& q_end) {
   RigidWorkspace* rigid = rigid_workspace(island, step.work);
   if (rigid == nullptr) return false;
@@ -51,9 +53,11 @@ inline bool has_closing_joint(const Island& island, const Workspace<double>& wor
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// Limits the rotation of the parts of a closing island to kMaxRotationClosing in the step. The force of an
-/// open joint can make a part oscillate about the joint with growing energy. The velocities of the centres of
-/// mass do not change. before: velocities at the start of the step. Returns the work of the change, J.
+/// Limits the rotation of each part of a closing island in the step to kMaxRotationClosing, or to the
+/// rotation with its velocity at the start of the step if that is larger. The force of an open joint can make
+/// a part oscillate about the joint with growing energy. The velocities of the centres of mass do not change.
+/// before: velocities at the start of the step. x: velocities of the group, which are changed. capped:
+/// scratch storage. Returns the work of the change, J.
 template <int Max>
 double limit_rotations(const Group<double, Max>& group, const VecX<double>& before, double h,
                        VecMax<double, Max>& x, VecMax<double, Max>& capped) {
@@ -74,7 +78,7 @@ double limit_rotations(const Group<double, Max>& group, const VecX<double>& befo
   return work;
 }
 
-/// Returns whether a parameter passes a limit when it moves for a time h.
+/// Returns whether a parameter passes a limit when it moves with its rate for a time h, s.
 template <int Max>
 bool crosses(const Group<double, Max>& group, double h, const State& state) {
   for (int i = 0; i < group.parts(); ++i) {
@@ -94,7 +98,8 @@ void update_limit_modes(const Group<double, Max>& group, double h, State& state)
       const double q = state.q[m.q0 + 7 + k], q_end = q + h * state.v[m.v0 + 6 + k];
       const Range range = m.limits[at(k)];
       limit_mode(state, m, k) = q_end <= range.min ? -1 : (q_end >= range.max ? 1 : 0);
-      // A rate too small to leave the limit is rounding of other impulses: it is set to zero.
+      // A rate that does not change q in floating-point arithmetic is rounding of other impulses: it is set
+      // to zero.
       if (limit_mode(state, m, k) != 0 && q_end == q) state.v[m.v0 + 6 + k] = 0;
     }
   }

@@ -10,13 +10,15 @@
 namespace pliant {
 
 /// An open joint becomes closed if its gap is at most kClosedGap times the size of its smaller part, and the
-/// rate of the gap at most kClosedRate times this size times Stabilization::rate.
+/// rate of the gap at most kClosedRate times this size times Stabilization::rate. For methods of first order
+/// both limits are larger while the joint rotates (close_joints in project_joints-inl.h).
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
 /// Engages the joints of an island that begin to act: joints with a small gap become closed, and impulses
 /// make the velocities agree with them. On return step.work is an evaluation of the joints of the island.
 /// scratch: scratch storage; its contents are ignored. impulses: the impulses on the rows of all joints are
-/// added to it, N s.
+/// added to it, N s. The change of energy goes to Work::projection, or to Work::limits if a limit or a slack
+/// string pushed.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
@@ -52,7 +54,8 @@ void project_frames(StepContext& step, const std::vector<int>& parts);
 void project_limits(StepContext& step);
 
 /// Projects all islands at step.t, with the limits and strings of their parts: open joints with a small gap
-/// become closed, and closed joints are projected. Throws UnsatisfiableModel if joints contradict each other.
+/// become closed, and closed joints are projected. Skips sleeping islands. Throws UnsatisfiableModel if
+/// joints contradict each other, and NumericalFailure if the step is too long.
 void project_joints(StepContext& step);
 
 }  // namespace pliant

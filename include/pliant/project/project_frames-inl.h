@@ -2,6 +2,7 @@
 // (include/pliant/part/local/README.md). A change delta of (c, theta, q_s) that leaves every node in place
 // changes d by -G delta, and W^T d by -K^T delta:
 //   K^T delta = W^T d,   and for the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
+// H = sum over nodes k of G_k^T W_k; K = H - P^T with P = d(W^T d)/dq_s; H0 is M at d = 0.
 #pragma once
 
 #include <pliant/project/project.h>

@@ -54,8 +54,8 @@ class Snapshot {
   GroupVectors<double, Max>& vectors_;
 };
 
-/// For a part that deforms locally: adds to its velocities the rigid motion that restores its momenta P and
-/// L. from, to: its evaluations before and after the projection.
+/// For a part that deforms locally: adds to its velocities the rigid motion that restores its momentum P and
+/// its angular momentum L. from, to: its evaluations before and after the projection.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
   const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
@@ -148,9 +148,9 @@ inline bool passes_limit(const PartModel& m, State& state) {
   return false;
 }
 
-/// Closes open joints with a small gap and a small rate of the gap. any_rate: whether the rate may be large.
-/// A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint; up to twice this gap
-/// is small too. Returns whether any joint closed.
+/// Sets the mode of open joints with a small gap and a small rate of the gap to closed. any_rate: whether the
+/// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint; up
+/// to twice this gap is small too. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -224,7 +224,8 @@ inline void close_strings(const Model& model, const Island& island, const Worksp
   }
 }
 
-/// Sets strings taut or slack.
+/// Sets the modes of strings: closed if the string is taut, otherwise slack. A string is taut if its ends are
+/// at its length and do not approach each other.
 inline void update_string_modes(const Model& model, const Island& island, const Workspace<double>& work,
                                 State& state) {
   const double rate = model.body().stabilization.rate;
@@ -238,8 +239,8 @@ inline void update_string_modes(const Model& model, const Island& island, const 
   }
 }
 
-/// Projects an island that was last evaluated as a rigid island. Returns false if the island needs the
-/// general projection.
+/// Projects an island of rigid parts on ball joints whose last evaluation used RigidIsland. Returns false if
+/// the island needs the general projection.
 inline bool project_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
                                  State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);

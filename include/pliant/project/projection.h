@@ -20,11 +20,12 @@ namespace pliant::projection {
 /// Residual of a projection relative to the length of the joint (JointModel::length); and rounding of
 /// coordinates relative to their size.
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
-/// If an iteration leaves more than the share kSlow of the error, the next one uses a new factor. If an
-/// iteration with a new factor leaves more than the share kStalled, the error is the rounding of the rows.
+/// If an iteration leaves more than the share kSlow of the error, the next iteration uses a new factorisation
+/// of C_q M^-1 C_q^T. If an iteration with a new factorisation leaves more than the share kStalled, the error
+/// is the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
-/// A closed joint with a gap above this number of residuals after a projection cannot close.
+/// A closed joint cannot close if its gap after a projection is above this multiple of rounding().
 inline constexpr double kOpenGap = 1e3;
 /// Largest number of joints that a message names.
 inline constexpr int kMaxNamed = 8;
@@ -34,12 +35,13 @@ inline constexpr double kDependentShare = 1e-6;
 /// Largest gap, in sizes of the smaller part of the joint, at which a joint can become closed. If a
 /// projection fails from a larger gap, the step is reported as too long.
 inline constexpr double kMaxGap = 0.1;
-/// A joint with a gap above kStuckGap lengths after a time of kPatience / beta never closes.
+/// A joint with a gap above kStuckGap lengths after a time of kPatience / beta never closes. beta:
+/// Baumgarte's factor, 1/s.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
 /// A projection whose independent rows differ from those at the start of the step may undo at most this share
 /// of the motion.
 inline constexpr double kMaxUndoneShare = 0.25;
-/// A string is taut within this distance of its length, in lengths of its smaller part.
+/// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
 inline constexpr double kTaut = 1e-9;
 
 /// Returns the larger of two gaps, or NaN if the first is NaN.
@@ -47,7 +49,7 @@ inline double max_or_nan(double gap, double largest) {
   return gap <= largest ? largest : gap;
 }
 
-/// Returns the rounding of the gap of a joint, m.
+/// Returns the gap of a joint, m, below which a gap is rounding.
 inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   double size = 0;
   for (const JointSide& side : joint.sides)
@@ -140,8 +142,9 @@ class Projection {
         work_(step.work),
         vectors_(vectors) {}
 
-  /// Projects the coordinates onto C = 0 and the limits. vectors.q: the coordinates before. Returns whether a
-  /// limit, or a string that was slack, pushed.
+  /// Projects the coordinates onto C = 0 and the limits. vectors.q: the coordinates before the projection.
+  /// Returns whether a limit, or a string that was slack, pushed. Throws UnsatisfiableModel if joints
+  /// contradict each other, or NumericalFailure if the step opened a joint by more than kMaxGap.
   bool coordinates() {
     // Rows that were dependent at the start of the step are dependent now, unless the step passes a singular
     // configuration. Joints contradict each other if they could only close by undoing the step.
@@ -173,8 +176,10 @@ class Projection {
   void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
   /// Projects the velocities onto C_dot = 0; the rate of a parameter at a limit, or of a taut string, may
-  /// only lead away from the bound. Returns the number of impulses on one-sided rows. joints, one_sided: the
-  /// works (J) of the impulses of the joints and of the one-sided rows are added to them.
+  /// only lead away from the bound. Sets State::at_limit of the group, and sets parameters that have passed a
+  /// limit exactly to the limit. Returns the number of impulses on one-sided rows that were not active
+  /// before. joints, one_sided: the works (J) of the impulses of the joints and of the one-sided rows are
+  /// added to them.
   int velocities(double& joints, double& one_sided) {
     rank_ = RankRule::decide;
     int impulses = 0;

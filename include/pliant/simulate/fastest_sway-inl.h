@@ -1,5 +1,5 @@
-// Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x on the velocities that
-// the joints allow.
+// Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x, where a(q) are the
+// accelerations, on the velocities x that the joints allow.
 #pragma once
 
 #include <pliant/simulate/fastest_sway.h>
@@ -18,12 +18,15 @@ namespace pliant {
 
 namespace sway {
 
+/// Largest number of vectors of Lanczos' method.
 inline constexpr std::size_t kMaxVectors = 30;
-/// The iteration ends if the next vector is below this share of the largest image of the map: it is rounding.
+/// The iteration ends if the norm of the next vector is below this share of the largest norm of an image of
+/// the map: such a vector is rounding.
 inline constexpr double kVanished = 1e-9;
 
-/// The map x -> -da/dq x on the velocities that the joints allow. It is symmetric in the mass metric for
-/// parts at rest. Its eigenvalues are omega^2 of oscillations, and negative for unstable motions.
+/// The map x -> -da/dq x, a the accelerations, on the velocities that the joints allow. It is symmetric in
+/// the mass metric for parts at rest. Its eigenvalues are omega^2 of oscillations, and negative for unstable
+/// motions.
 class Sway {
  public:
   Sway(const Dynamics& dynamics, const State& state, Workspace<double>& work)

@@ -38,9 +38,10 @@ namespace pliant {
 namespace simulation {
 /// Times are equal within this share of a step, or this number of units in the last place.
 inline constexpr double kNear = 1e-9, kUlps = 8;
-/// If joints do not close after a step, the step is repeated as this number of shorter steps.
+/// If the projection of joints fails after a step, the step is tried again as this number of shorter steps,
+/// to find out whether its length is the cause.
 inline constexpr int kShorterSteps = 16;
-/// Shortest step to a tolerance, as a share of the time.
+/// Shortest step with a tolerance, as a share of the time.
 inline constexpr double kMinStep = 16 * std::numeric_limits<double>::epsilon();
 
 /// Throws std::invalid_argument if a tolerance is out of range.
@@ -240,9 +241,9 @@ PLIANT_INLINE void Simulation::reject_step() {
 }
 
 /// Attempts a step of the length in the state and returns its error. The error of the method includes that of
-/// located impacts. If few bodies rest on each other, or if impacts were not located, step doubling estimates
-/// the error of contact. With many bodies, or with contacts at nodes, this error is not estimated, and the
-/// length of the step is limited instead.
+/// located impacts. If parts rest on each other, or if impacts were not located, step doubling estimates the
+/// error of contact. With many moving parts, or with contacts at nodes, this error is not estimated, and the
+/// length of the step is limited instead (estimate_contact_error).
 PLIANT_INLINE StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();

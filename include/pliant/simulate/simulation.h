@@ -22,22 +22,22 @@ class ContactStepping;  // contact/contact_stepping.h
 
 class Simulation {
  public:
-  /// Prepares the body, which must outlive the simulation, and starts at time 0: joints with a small gap
-  /// become closed, and impulses make the velocities agree with them. integrator: the name of a method, or
-  /// kAutomatic. threads: number of threads. tolerance: largest error of a step (method/error_scale.h), which
-  /// then determines the length of the steps. With tolerance 0 steps have the length that the caller gives,
-  /// or with kAutomatic the tolerance is kStandardTolerance. Throws std::invalid_argument and
-  /// UnsatisfiableModel.
+  /// Prepares the body, which must outlive the simulation, and starts at time 0. Parts are assembled if
+  /// Stabilization::assemble_first is set. Joints with a small gap become closed, and impulses make the
+  /// velocities agree with them. integrator: the name of a method, or kAutomatic. threads: number of threads.
+  /// tolerance: largest error of a step (method/error_scale.h), which then determines the length of the
+  /// steps. With tolerance 0 steps have the length that the caller gives, or with kAutomatic the tolerance is
+  /// kStandardTolerance. Throws std::invalid_argument, UnsatisfiableModel and NumericalFailure.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
   Simulation(const Simulation&) = delete;  // dynamics_ refers to model_
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by h seconds (> 0 and finite). Without a tolerance it is one step, with stops where joints
-  /// begin or stop acting; with a tolerance it is as many steps as the tolerance needs. Throws
-  /// NumericalFailure, UnsatisfiableModel and std::invalid_argument; the state is then that before the failed
-  /// step.
+  /// Advances by h seconds (> 0 and finite). Without a tolerance the advance is one step, with stops where
+  /// joints begin or stop acting and where prescribed paths have kinks. With a tolerance the advance takes as
+  /// many steps as the tolerance needs. Throws NumericalFailure, UnsatisfiableModel and
+  /// std::invalid_argument; the state is then the one before the failed step.
   void step(double h);
   /// Advances by one step of the length that the tolerance allows. The step ends at the time `until` (s,
   /// later than now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
@@ -51,8 +51,9 @@ class Simulation {
   /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
-  /// Continues from another state of the same model. Throws std::invalid_argument if the state does not fit
-  /// the model.
+  /// Continues from another state of the same model. Forgets the impulses of joints after the time of that
+  /// state, and the contacts of the last step. Throws std::invalid_argument if the state does not fit the
+  /// model.
   void set_state(State state);
   double time() const { return state_.time(); }
 

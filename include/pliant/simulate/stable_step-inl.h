@@ -29,8 +29,8 @@ inline constexpr double kMaxRotation = 0.5;
 /// and add energy.
 inline constexpr double kMaxPhase = 1;
 
-/// Returns L of Eq. (9) at a port, an attachment point: the world velocity (m/s) of the point is L v_r. 3 x
-/// (6 + n_s).
+/// Returns L of Eq. (9) at a port, an attachment point: the world velocity (m/s) of the point is L v_r with
+/// v_r = (R^T c_dot, omega, q_s_dot). Size: 3 x (6 + n_s).
 inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
   const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
   MatX<double> L(3, 6 + m.n_s);
@@ -45,7 +45,7 @@ struct LinearSystem {
   MatX<double> M, K, D;
 };
 
-/// Returns the columns of a matrix with the numbers `which`.
+/// Returns the columns of A with the numbers `which`.
 inline MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
   MatX<double> columns(A.rows(), static_cast<Eigen::Index>(which.size()));
   for (std::size_t i = 0; i < which.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
@@ -95,7 +95,8 @@ inline double stable_step_of(const Integrator& method, const LinearSystem& syste
 /// Returns bounds of K (1/s^2) and D (1/s) of a part that deforms locally, in mass-normalised coordinates:
 /// the sum of the bounds of its local elasticity, its global parameters, its drag and the springs at its
 /// attachment points. implicit: the method integrates elasticity implicitly, and only drag and springs are
-/// included.
+/// included. The local elasticity is not included either if the modes of the part oscillate freely and no
+/// spring pulls the part, because methods then integrate the modes exactly.
 inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
                                              const PartWorkspace<double>& w, bool implicit) {
   const PartModel& m = model.parts()[i];

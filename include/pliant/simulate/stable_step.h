@@ -12,6 +12,7 @@ struct StableStep {
   std::string limit;      ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
   std::string uncounted;  ///< causes that are not included and may give a smaller step; empty: none
 };
+/// Returns the largest stable step at the current state, with its cause.
 StableStep stable_step(const Simulation& simulation);
 
 }  // namespace pliant

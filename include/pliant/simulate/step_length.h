@@ -18,6 +18,8 @@ struct StepGrowth {
 };
 /// Smallest growth that is worth a new factorisation, for methods whose factors depend on the step length.
 inline constexpr double kMinRareGrowth = 2;
+/// Returns the limits for a method: growth by 2 to 40 if it reuses factors, which it does for parts whose
+/// nodes have a constant stiffness and are integrated implicitly; otherwise the defaults.
 StepGrowth growth_of(const Integrator& method, const Model& model);
 
 /// Returns the length (s) of the step after a step of length h (s) with this error, in tolerances. order: of

@@ -21,7 +21,7 @@ inline constexpr int kBendingRange = 256;
 /// Rest angles up to this, rad, are rounding errors of a flat mesh.
 inline constexpr double kFlatHinge = 1e-12;
 
-/// Returns Q of a triangle with the edges e, N m.
+/// Returns Q of a triangle (bending.h), N m. e: its edges, m.
 inline Mat3<double> mid_edge_stiffness(const Edges<double>& e, const Sheet& sheet) {
   const double area = 0.5 * e[0].cross(e[1]).norm();
   Mat3<double> Q;
@@ -55,7 +55,7 @@ inline HingeCorners<Pack> scaled_corners(const Pack& factor, const HingeCorners<
   return {factor * a[0], factor * a[1], factor * a[2], factor * a[3]};
 }
 
-/// Returns the change of the hinge gradient dtheta/dx along dx.
+/// Returns the change of the hinge gradient dtheta/dx to first order when the corners x (m) move by dx.
 inline HingeCorners<Pack> hinge_gradient_change(const HingeCorners<Pack>& x, const HingeCorners<Pack>& dx) {
   using D = Dual<1, Pack>;
   HingeCorners<D> moving;
@@ -86,8 +86,8 @@ MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet
       own_inertia_(VecX<double>::Zero(static_cast<Eigen::Index>(edges_.size()))) {
   sheet.check();
   if (!(area_density > 0) || !std::isfinite(area_density))
-    throw std::invalid_argument("the mass of a sheet is " + std::to_string(area_density) +
-                                " kg/m^2; it must be positive and finite");
+    throw std::invalid_argument("the mass of a sheet for each unit of area is " +
+                                std::to_string(area_density) + " kg/m^2; it must be positive and finite");
   n_hinges_ = hinge_batches_.n_elements();
   const int n_triangles = static_cast<int>(mesh.n_triangles());
   for (int t = 0; t < Pack::kLanes * static_cast<int>(triangles_.size()); ++t) {
@@ -179,7 +179,8 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh) {
     set_coupling(mesh, t, angles.data(), phi.data());
 }
 
-/// Computes C of triangle t; a free lane receives C of the last triangle. The curvature at rest is
+/// Computes C of triangle t. Lanes of the last batch without a triangle receive C of the last triangle. The
+/// curvature at rest is
 ///   b = 1/A sum_k alpha_k |e_k| n_k n_k^T,
 /// and a strain eps of the triangle changes the curvature by
 ///   kappa = 1/A sum_k alpha_k (n_k . eps n_k) |e_k| n_k n_k^T - (b eps + eps b)/2,
@@ -206,8 +207,8 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh, int t, const do
     Mat3<double> kappa = -0.5 * (b * B[l] + B[l] * b);
     for (std::size_t k = 0; k < 3; ++k)
       kappa += rest[k][lane] * across[k].cwiseProduct(B[l]).sum() * e[k].norm() / area * across[k];
-    // alpha_k from the component of kappa along n_k n_k^T. With t_k = |e_k| n_k and the other two edges i and
-    // j, the tensor dual to t_k t_k^T is -(e_i e_j^T + e_j e_i^T)/(8 A^2).
+    // alpha_k follows from the component of kappa along n_k n_k^T. With t_k = |e_k| n_k and the other two
+    // edges i and j, the tensor dual to t_k t_k^T is -(e_i e_j^T + e_j e_i^T)/(8 A^2).
     for (std::size_t k = 0; k < 3; ++k)
       triangles.C[k][l].set(lane, -e[k].norm() * e[(k + 1) % 3].dot(kappa * e[(k + 2) % 3]) / (4 * area));
   }
@@ -395,7 +396,7 @@ template <class Hinges>
 struct MidEdgeBending<Hinges>::Stiffness {
   static constexpr int kCoordinates = 21;
   ElementMatrix<kCoordinates> element{{}, Eigen::Matrix<double, kCoordinates, kCoordinates>::Zero()};
-  /// dalpha/dx.
+  /// dalpha/dx: one row for each edge of the triangle.
   Eigen::Matrix<double, 3, kCoordinates> G = Eigen::Matrix<double, 3, kCoordinates>::Zero();
 };
 

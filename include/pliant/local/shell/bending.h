@@ -11,8 +11,9 @@
 //   Q_kl = D/A [(1 - nu)(e_k . e_l)^2/(|e_k||e_l|) + nu |e_k||e_l|]   (D: sheet.h).
 // On a curved rest shape alpha also has a term C q of the triangle's own strain q (edge_strain.h), which
 // makes kappa the bending strain of Koiter and Sanders. The element converges on any mesh; an energy of
-// dtheta alone does not. phi has the rotary inertia rho t^3/12 for each unit of area. It adds nothing to the
-// momentum of the part, and rigid motion does not change it. Boundary edges are free of moments.
+// dtheta alone does not. phi has the rotary inertia rho t^3/12 for each unit of area. This inertia adds
+// nothing to the momentum of the part, and rigid motion does not change phi. Boundary edges are free of
+// moments.
 #pragma once
 
 #include <array>
@@ -67,7 +68,7 @@ class MidEdgeBending final : public NodalEnergy {
   int n_angles() const { return Pack::kLanes * hinge_batches_.n_batches() + 1; }
   std::size_t n_moments() const { return 3 * Pack::kLanes * triangles_.size(); }
 
-  // Constructor: coupling C.
+  // The constructor calls these four functions. They compute Triangles::C from the curvature at rest.
   void set_coupling(const ShellMesh& mesh);
   void set_coupling(const ShellMesh& mesh, int t, const double* angles, const double* phi);
   std::vector<double> rest_angles(const ShellMesh& mesh) const;
@@ -84,8 +85,7 @@ class MidEdgeBending final : public NodalEnergy {
   /// Computes dtheta of all hinges. angle(batch) returns dtheta of four hinges.
   template <class Angle>
   void compute_angles(double* angles, ThreadPool* pool, Angle&& angle) const;
-  /// Computes the moments of all triangles from dtheta, phi and strain(batch), which returns q of four
-  /// triangles.
+  /// Computes the moments of all triangles from dtheta and phi. strain(batch) returns q of four triangles.
   template <class Strain>
   void compute_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
                        Strain&& strain) const;

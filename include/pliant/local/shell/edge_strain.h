@@ -5,8 +5,8 @@
 // with i, j the other two edges, t_k = e_k rotated by 90 degrees in the plane and A the area.
 //   small displacements    q_k = e_k . (d_(k+2) - d_(k+1))
 //   finite displacements   q_k = (|e_k|^2 - |e_k|_rest^2)/2, from Green's strain
-// An energy W(q) pulls the two ends of edge k together with the force tau_k e_k, tension tau_k = dW/dq_k.
-// Rigid motion leaves q = 0 (to first order for small displacements).
+// An energy W(q) pulls the two ends of edge k together with the force tau_k e_k, where tau_k = dW/dq_k is the
+// tension (N/m). Rigid motion leaves q = 0 (to first order for small displacements).
 #pragma once
 
 #include <array>

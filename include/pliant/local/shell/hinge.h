@@ -3,7 +3,9 @@
 //   theta = atan2(e/|e| . (n x m), n . m),   e = b - a,  n = e x (c - a),  m = (d - a) x e.
 // theta is positive on a ridge. If c moves by z along the normal of its triangle, theta changes by -z/height,
 // where height is the distance of c from the edge; the same holds for d. The gradients at all four corners
-// sum to zero. The foot of each height on the edge gives the shares of a and b.
+// sum to zero. With r_c the position of the foot of the height of c on the edge (0 at a, 1 at b), and r_d
+// that of d, the gradient at a is -(1 - r_c) times that at c minus (1 - r_d) times that at d. The gradient at
+// b has -r_c and -r_d as factors.
 #pragma once
 
 #include <array>

@@ -18,7 +18,8 @@ namespace pliant {
 
 /// Weights of the loaded membrane.
 struct Load {
-  /// Integration of w0 |d|^2: exact, or with a third of each triangle at each corner.
+  /// Integration of w0 |d|^2: `consistent` is exact, `lumped` assigns a third of each triangle to each
+  /// corner.
   enum class Size { consistent, lumped };
   double w0;  ///< weight of the size |d|^2: N/m on parameters, N/m^3 on the surface
   double w1;  ///< weight of the variation |grad d|^2: N/m
@@ -37,7 +38,8 @@ struct ParameterMesh {
 class LoadedMembrane final : public NodalEnergy {
  public:
   /// Integrates over du dv. Throws std::invalid_argument if w0 or w1 is negative or not finite, if a triangle
-  /// refers to an unknown node, or if it has no area in the plane.
+  /// refers to an unknown node or has no area in the plane (u, v), or if uv does not have one column for each
+  /// corner.
   LoadedMembrane(const ParameterMesh& mesh, const Load& load);
   /// Integrates over the surface. Throws std::invalid_argument if w0 or w1 is negative or not finite.
   LoadedMembrane(const ShellMesh& mesh, const Load& load);

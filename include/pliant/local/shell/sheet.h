@@ -14,7 +14,8 @@ struct Sheet {
   double nu;         ///< Poisson's ratio
   double thickness;  ///< m
 
-  /// Throws std::invalid_argument, with the value, unless E >= 0, -1 < nu <= 1/2 and thickness > 0.
+  /// Throws std::invalid_argument, with the value, unless E is finite and >= 0, -1 < nu <= 1/2, and thickness
+  /// is finite and > 0.
   void check() const;
   /// Lame's constants of plane stress, Pa.
   double lambda() const { return E * nu / (1 - nu * nu); }

@@ -14,8 +14,8 @@
 namespace pliant {
 
 namespace detail {
-/// A triangle is refused if twice its area is at most this fraction of its longest edge squared: its area is
-/// then a rounding error.
+/// A triangle is refused if twice its area is at most this fraction of the square of its longest edge: the
+/// area is then a rounding error.
 inline constexpr double kShellFlatTriangle = 1e-12;
 }  // namespace detail
 

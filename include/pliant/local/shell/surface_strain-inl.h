@@ -15,7 +15,7 @@ namespace pliant {
 
 namespace detail {
 
-/// A triangle is ignored if its area is at most this fraction of its longest edge squared.
+/// A triangle is ignored if its area is at most this fraction of the square of its longest edge.
 inline constexpr double kSurfaceFlatTriangle = 1e-7;
 
 /// Returns the edges of triangle t with the vertices at x.

@@ -16,8 +16,8 @@ class SurfaceStrain {
   /// each column. Triangles without area at rest are ignored.
   SurfaceStrain(const Eigen::Matrix3Xd& X, Eigen::Matrix3Xi triangles);
 
-  /// Returns the strain at each vertex; 0 at a vertex without triangles. x: current positions of the
-  /// vertices, m.
+  /// Returns the strain at each vertex; 0 at a vertex without triangles that have an area at rest. x: current
+  /// positions of the vertices, m.
   VecX<double> at(const Eigen::Matrix3Xd& x) const;
 
  private:

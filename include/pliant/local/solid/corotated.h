@@ -11,13 +11,14 @@
 
 namespace pliant {
 
-/// Returns the rotation nearest to F. Throws InvertedElement unless det F > 0.
+/// Returns the rotation nearest to F. Throws InvertedElement unless det F > 0, and if the iteration does not
+/// converge because F is almost singular.
 template <class T>
 Mat3<T> nearest_rotation(const Mat3<T>& F) {
   using std::sqrt;
   constexpr int max_iterations = 60;
-  // Bound on the squared norm of a step. Convergence is quadratic, so that the error after such a step is
-  // below rounding.
+  // Bound on the squared norm of the change of R in an iteration. Convergence is quadratic, so that the error
+  // after such a change is below rounding.
   constexpr double tolerance = 1e-20;
   Mat3<T> R = F;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {

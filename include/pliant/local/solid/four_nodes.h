@@ -54,8 +54,8 @@ class FourNodes {
   int count_;
 };
 
-/// Calls act(four) for all n nodes. `four` is a FourNodes<true>; the last one is a FourNodes<> if n is not a
-/// multiple of four.
+/// Calls act(four) once for every four of the n nodes. `four` is a FourNodes<true>; in the last call it is a
+/// FourNodes<> if n is not a multiple of four.
 template <class F>
 void for_each_four(Eigen::Index n, F&& act) {
   Eigen::Index first = 0;

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// An element is inverted (det F < 0) or flat (det F = 0).
+/// An element is inverted (det F < 0), flat (det F = 0) or almost flat.
 struct InvertedElement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -4,7 +4,8 @@
 //   10 nodes   N_a = L_a (2 L_a - 1) at corners, 4 L_a L_b on the edges 01 12 20 03 13 23
 //   15 nodes   the 10-node functions enriched with bubbles: 27 L_a L_b L_c on faces (node 10 + f is on the
 //              face without corner f) and 256 L_0 L_1 L_2 L_3 in the middle (node 14). The bubbles make the
-//              lumped masses positive and keep fourth order (Geevers, Mulder & van der Vegt 2018).
+//              lumped masses positive and keep convergence of fourth order (Geevers, Mulder & van der Vegt
+//              2018).
 // Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
 // exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that a uniform stress is in balance on
 // curved elements too. The mass rule is exact for degree 5 (Walkington 2000).
@@ -198,9 +199,10 @@ struct EnrichedTetrahedron {
     }
   }
 
-  /// Computes the coefficients of the bubbles for component r of nodal vectors x: a coefficient is the value
-  /// at the bubble's node minus the value there of the quadratic functions and, in the middle, of the face
-  /// bubbles.
+  /// Computes the coefficients of the four face bubbles (face) and of the middle bubble (middle), for
+  /// component r of nodal vectors x. A coefficient is the nodal value at the bubble's node minus the value
+  /// that the quadratic functions have there. For the middle bubble the values of the face bubbles are
+  /// subtracted too.
   template <class T>
   static void bubbles(const Vec3<T>* x, int r, T* face, T& middle) {
     T corners = x[0][r] + x[1][r] + x[2][r] + x[3][r], edges(0.0), faces(0.0);
