@@ -22,8 +22,9 @@ constexpr double kSpacing = 0.4;
 constexpr double kMaxFaceDepth = 0.5;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
-/// A face does not support a point whose distance to another face is less than kNearerShare times its depth,
-/// if the cosine between their normals is above kMinCosine.
+/// A face does not support a point behind it if another face is nearer: if the distance to the other face is
+/// less than kNearerShare times the depth behind this face, and the cosine between both normals is above
+/// kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
 /// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
 /// of the faces that meet there.
@@ -33,7 +34,7 @@ constexpr double kLevelAlongRidge = 3e-6;
 /// Step for the one-sided slopes at a point of a ridge, in sizes.
 constexpr double kSideStep = 1e-7;
 /// Where a part is level along a ridge, its two contacts are this far inside the ends of the level range, in
-/// sizes, where the height is still that of the range.
+/// sizes. There the height is still that of the range.
 constexpr double kInset = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
