@@ -278,7 +278,7 @@ void PartReader::prepare() {
   for (int i = 0; i < 3; ++i) {
     const double moment = inertia.M(3 + i, 3 + i);
     if (is_workable(inertia.mass) && is_workable(moment)) continue;
-    return faults_.place(r_.json(), "size and density give a mass of " + brief(inertia.mass) +
+    return faults_.place(r_.json(), "the part has a mass of " + brief(inertia.mass) +
                                         " kg and a moment of inertia of " + brief(moment) +
                                         " kg m^2; expected both from 1e-100 to 1e100");
   }
