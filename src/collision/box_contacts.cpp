@@ -1,4 +1,5 @@
-// Separating axis test of two boxes, clipping of the facing face, and the nearest point of a ball.
+// Separating axis test of two boxes, clipping of a face to the opposite face, and the nearest point of a
+// ball.
 #include <pliant/collision/box_contacts.h>
 
 #include <algorithm>
@@ -21,10 +22,10 @@ constexpr double kSameCorner = 1e-6;
 
 /// The axis along which the gap between two boxes is largest.
 struct Axis {
-  Vec3<double> n = Vec3<double>::Zero();  ///< from a to b
+  Vec3<double> n = Vec3<double>::Zero();  ///< unit vector from a to b, world
   double gap = -std::numeric_limits<double>::infinity();
-  /// Axis number of the box whose face normal n is: of_a for box a, of_b for box b; -1 for the other box. If
-  /// both are set, n is the cross product of these two axes.
+  /// of_a: number of the axis of box a along which n is; -1 if n is a face normal of box b. of_b: as of_a,
+  /// with the boxes exchanged. If neither is -1, n is along the cross product of both axes.
   int of_a = -1, of_b = -1;
 };
 
@@ -96,7 +97,7 @@ void clip(Polygon& polygon, const Vec3<double>& n, double bound) {
 }
 
 /// Returns the face of a box whose normal is most opposite to n, clipped to the region over a face of the
-/// other box. That face has the normal n, along axis `number` of the other box.
+/// other box. The latter face has the normal n, along axis `number` of the other box.
 Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const Vec3<double>& n) {
   const Vec3<double> in_box = box.R.transpose() * n;
   int k = 0;

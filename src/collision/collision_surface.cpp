@@ -65,8 +65,8 @@ class Chart {
       e2_ = start.normalized().cross(e1_);
     }
   }
-  /// Distance to the farthest neighbour in each coordinate, in spacings. Circles of latitude are shorter than
-  /// great circles.
+  /// Returns the distance to the farthest neighbour in each coordinate, in spacings. In longitude it is 2,
+  /// because circles of latitude are shorter than great circles.
   Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
   Vec3<double> place(const Eigen::Vector2d& x) const {
     if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
@@ -106,8 +106,9 @@ class Chart {
 };
 
 /// Returns the steps from the centre of a stencil to the minima of quadratics through its heights h (m), in
-/// stencil radii, at most 1. One quadratic for each axis suits rims and level lines of a surface; one depends
-/// on both coordinates. Quadratics whose second difference is below `flat` (m) are skipped.
+/// stencil radii, at most 1. Two quadratics depend on one coordinate each; they suit rims and level lines of
+/// a surface. A third one depends on both coordinates. A quadratic whose second difference is at most `flat`
+/// (m) is skipped.
 std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
   std::vector<Eigen::Vector2d> steps;
   auto add = [&](const Eigen::Vector2d& step) {
@@ -315,8 +316,8 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
   for (const double band : {kSameHeight * size, kSurfaceSag * size})
     for (const Eigen::Index i : outermost(p, within(band), kSamePlace * size))
       if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
-  // On a flat face the search would move from a corner to one side of the face. But the part is supported at
-  // the corners of the face, so that a sample point that is low enough replaces the result of its search.
+  // On a flat face the search would move from a corner along the face. The part is supported at the corners
+  // of the face. Therefore a sample point that is low enough replaces the result of its search.
   auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
     return (a - b).norm() >= kSamePlace * size &&
            thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlatChord * size;

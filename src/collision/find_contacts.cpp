@@ -31,7 +31,7 @@ constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 constexpr double kFlush = 1e-4;
 /// Largest gap over an obstacle that least_gap() returns, in sizes of the part.
 constexpr double kMaxReportedGap = 0.1;
-/// Accuracy of the distance to the nearer side of a thin part, in thicknesses of the part.
+/// Accuracy of the distance to the surface along the thin axis of a part, in thicknesses of the part.
 constexpr double kBisectionTolerance = 1e-12;
 /// The boxes of the pair search are enlarged by this share of the size of a part.
 constexpr double kPairMargin = 0.05;
@@ -40,8 +40,8 @@ constexpr double kPairMargin = 0.05;
 constexpr double kMaxExcess = 2;
 /// Contacts are merged only if the difference of their normals has a norm below this.
 constexpr double kMergeNormal = 0.2;
-/// Points of the two sides whose gaps differ by less than this, in sizes of the smaller part, are equally
-/// deep.
+/// Two points of one contact, found on the surfaces of both parts, are equally deep if their gaps differ by
+/// less than this, in sizes of the smaller part.
 constexpr double kEqualDepth = 1e-9;
 
 }  // namespace
@@ -73,7 +73,7 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
     gradient = part_.inside_outside_gradient(in_b, values_);
     const double height = part_.inside_outside(in_b, values_) / gradient.norm();
     // No point is deeper than half the thickness of a part. Beyond that, f / |grad f| is the distance to a
-    // far side, and the side across the thin axis is used instead.
+    // far part of the surface. The distance along the thin axis is used instead.
     return height < -0.5 * thickness_ ? across(in_b, gradient) : height;
   }
   double height(const Vec3<double>& p) const override {
@@ -86,8 +86,8 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   }
 
  private:
-  /// Returns the height (negative, m) of a point inside b under a side of b, by bisection, and the gradient
-  /// on that side. The thin axis of b passes through two sides; the nearer one is used.
+  /// Returns the height (negative, m) of a point inside b under the surface of b, and the gradient there. The
+  /// surface point is found by bisection along the thin axis, from the point away from the middle of b.
   double across(const Vec3<double>& in_b, Vec3<double>& gradient) const {
     const Vec3<double> out = (in_b[thin_axis_] < 0 ? -1.0 : 1.0) * Vec3<double>::Unit(thin_axis_);
     double inside = 0, outside = thickness_;
@@ -339,7 +339,8 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   ours.clear();
   theirs.clear();
   find_on_part(a, b, rule, max_gap, ours);
-  // Two ellipsoids touch at one point. A gap above max_gap in one direction excludes a contact.
+  // Two ellipsoids touch at one point. If the search on one surface finds a gap above max_gap, there is no
+  // contact.
   const bool at_one_point = scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes;
   if (at_one_point && ours.empty()) return;
   find_on_part(b, a, rule, max_gap, theirs);

@@ -209,8 +209,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
         turning = 0.5 * h * h * curvature;
       }
     }
-    // The limit includes the free distance between the parts; the tolerance is a share of the thin part
-    // alone.
+    // The limit max_travel includes the free distance between the parts. The tolerance is a share of the
+    // thickness of the thinner part alone.
     const double tolerated = max_travel + (kToleratedTravel - 1) * thin, whole = travel + change + turning;
     near.limit_travel(travel, change + turning, done ? tolerated / kToleratedTravel : max_travel, h, done);
     near.spare = std::min(near.spare, 0.5 * (tolerated - std::min(whole, max_travel)));

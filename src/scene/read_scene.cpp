@@ -175,7 +175,8 @@ class SceneReader {
         turns += std::max(std::abs(p.rest_value()), p.dynamic ? std::abs(p.initial) : 0) / kPi;
     }
     constexpr double edges_per_turn = 8;
-    const double needed = std::ceil(turns * edges_per_turn / 2);  // a side has 2 * resolution edges
+    const double needed =
+        std::ceil(turns * edges_per_turn / 2);  // there are 2 * resolution edges between the two ends
     if (resolution < needed)
       faults_.warn(
           r.given("resolution") ? r.at("resolution") : r.at("name"),

@@ -10,7 +10,8 @@
 namespace pliant {
 
 void SceneFaults::add(const JsonValue& at, std::string message, Severity severity) {
-  // A fault that is only counted needs no place, whose computation searches the document.
+  // Beyond the stored faults a fault is only counted. It then needs no place, which only a search of the
+  // document finds.
   diagnostics_.add(diagnostics_.full() ? Diagnostic{"", 0, 0, "", "", severity}
                                        : document_.fault(at, std::move(message), severity));
 }

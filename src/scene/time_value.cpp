@@ -30,7 +30,7 @@ Check key_rule(const char* values) {
              kWholeValue);
     }
     if (y.array().size() != t.size()) {
-      report(y, "expected one for each time, that is " + std::to_string(t.size()), kWholeValue);
+      report(y, "expected one entry for each time, that is " + std::to_string(t.size()), kWholeValue);
     }
   };
 }
@@ -46,8 +46,8 @@ Type formula() {
 Type key_frames() {
   return record({"key_frames",
                  "Key frames: a twice continuously differentiable cubic spline through the values; constant "
-                 "before the first and after the last key.",
-                 {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
+                 "before the first and after the last key frame.",
+                 {required("t", times(), "Times of the key frames, increasing.", "[0, 1, 2]"),
                   required("y", array(number(unbounded(), ""), 1),
                            "Values at these times, in the unit of the function.", "[0, 0.5, 0]"),
                   optional("end_rates", array(number(unbounded(), ""), 2, 2),
@@ -59,8 +59,8 @@ Type key_frames() {
 Type point_key_frames() {
   return record({"point_key_frames",
                  "Key frames of points: a twice continuously differentiable cubic spline through the points; "
-                 "constant before the first and after the last key.",
-                 {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
+                 "constant before the first and after the last key frame.",
+                 {required("t", times(), "Times of the key frames, increasing.", "[0, 1, 2]"),
                   required("points", array(vector3(""), 1),
                            "Points [x, y, z] at these times, in the unit of the function.",
                            "[[0, 0, 0], [0, 0, 1], [0, 0, 0]]")}})

@@ -1,6 +1,6 @@
 // Impacts of parts with dynamic global parameters. Velocities and energy after an impact obey the inelastic
 // law: the relative velocity at the contact point becomes zero (its normal component only, if the contact
-// slides). The parameters receive a part of the energy, and pairs conserve their momenta.
+// slides). The parameters receive a share of the energy, and pairs conserve their momenta.
 #include "catch.h"
 
 #include <cmath>
@@ -54,8 +54,9 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// Adds `sign` times the derivative of the velocity (world frame) of the contact point of one side to L, with
-/// respect to v: its columns are (I, -R [p]x, R J). A side without coordinates adds nothing.
+/// Adds `sign` times the derivative with respect to v of the velocity (world frame) of the contact point of
+/// one side to L. The columns of this derivative are (I, -R [p]x, R J). A side without coordinates adds
+/// nothing.
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;
@@ -180,7 +181,7 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
         loss_error.note(
             std::abs(impact.ledger_after.work.sum() - impact.ledger_before.work.sum() + measured_loss) /
             loss);
-        // The parameter rates receive a part of the energy.
+        // The parameter rates receive a share of the energy.
         VecX<double> rates = VecX<double>::Zero(impact.after.v.size());
         rates.segment<3>(6) = change.segment<3>(6);
         CHECK(0.5 * rates.dot(impact.M * rates) > 0.1 * loss);

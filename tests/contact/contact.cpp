@@ -204,7 +204,7 @@ TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
     test::run(simulation, 0.8, static_cast<int>(std::lround(0.8 / h)));
     CHECK(simulation.state().v.norm() < 1e-12);
     errors.push_back(std::abs(simulation.state().q.head<2>().norm() - 4.25 / (2 * 0.4 * kG)));
-    CHECK(errors.back() < 0.4 * kG * h * h);  // the step in which the block stops has first-order friction
+    CHECK(errors.back() < 0.4 * kG * h * h);  // friction is of first order in the step in which it stops
   }
 }
 

@@ -153,8 +153,8 @@ TEST_CASE("inelastic contact with friction gains no energy beyond the error of a
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       CAPTURE(method);
       const Gain result = gain(build, method, 1e-3, 700, {2, 4, 16});
-      // The step separates parts that overlap after a collision within it; the ledger contains the work of
-      // this.
+      // Parts may overlap after a collision within a step. The step separates them, and the ledger contains
+      // the work of this separation.
       CHECK(result.energy <= 1e-9);
       CHECK(result.balance <= (std::string(method) == "semi_implicit_euler" ? 1e-6 : 1e-7));
       CHECK(result.sum <= 1e-7);

@@ -96,8 +96,8 @@ TEST_CASE("the transitions from sliding to rest and to rolling are resolved with
 }
 
 TEST_CASE(
-    "a ball that rolls down another ball follows the tolerance, with step lengths proportional to its square "
-    "root",
+    "the error of a ball that rolls down another ball is within the tolerance, with steps in proportion "
+    "to the square root of the tolerance",
     "[error][contact]") {
   const double angle = angle_on_hill(0.5);
   auto rolling_steps = [&](double tolerance) {
@@ -166,7 +166,7 @@ TEST_CASE("a ball that rolls off a table falls from the point where it leaves", 
   }
 }
 
-TEST_CASE("a pivoted board with a ball on it, hit by another ball, follows the tolerance",
+TEST_CASE("a pivoted board with a ball on it is hit by another ball, with an error within the tolerance",
           "[error][contact]") {
   auto end = [](double tolerance, long max_steps) {
     MultiBody body;

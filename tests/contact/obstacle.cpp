@@ -24,8 +24,8 @@ struct Mesh {
   Eigen::Matrix3Xi triangles;
 };
 
-/// Maps a grid of n x n squares over [-1, 1]^2. Its inner vertices are displaced at random by up to `random`
-/// times their spacing.
+/// Returns a grid of n x n squares over [-1, 1]^2, two triangles each, mapped into space by `map`. Before
+/// that, the inner vertices are displaced at random by up to `random` times their spacing.
 Mesh sheet(int n, double random, const std::function<Vec3<double>(double, double)>& map) {
   Draws draws(7);
   Mesh mesh;
@@ -260,7 +260,8 @@ TEST_CASE("N53: fast parts do not pass through a mesh without thickness", "[cont
     part.velocity(speed * Vec3<double>(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), -1), omega);
     body.plate("plate", {0, 0, 0}, Eigen::Quaterniond::Identity(), 5, 5);
     Simulation simulation(body, "rk4");
-    // A box would leave with a spin that is too fast for these steps.
+    // The run stops at the first impact, because a box would leave with a spin that is too fast for these
+    // steps.
     for (int k = 0; k < 30 && simulation.step_counters().impacts == 0; ++k) simulation.step(1e-2);
     if (!(simulation.step_counters().impacts > 0 && simulation.state().q[2] > 0)) ++through;
   }

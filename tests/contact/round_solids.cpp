@@ -48,7 +48,7 @@ void deformed_box(MultiBody& body, const std::string& link, const Part::Named& b
 Eigen::Quaterniond rotation_about(double angle, const Vec3<double>& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
-/// Rotates the z axis of a part to the x axis of the world.
+/// Returns the orientation in which the z axis of a part is along the x axis of the world.
 Eigen::Quaterniond lying_on_side() {
   return rotation_about(kPi / 2, Vec3<double>::UnitY());
 }
@@ -65,7 +65,7 @@ TEST_CASE(
   struct Case {
     const char* name;
     std::function<void(MultiBody&)> build;
-    double displacement;  // largest displacement, m
+    double displacement;  // bound of the displacement, m
   };
   const double tip = std::atan(2.0 / 3);  // half the opening angle of a cone
   const std::vector<Case> cases{

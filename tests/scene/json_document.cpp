@@ -280,7 +280,7 @@ TEST_CASE("I19 size limits are checked before reading") {
   std::string many = "[";
   for (std::size_t i = 0; i < JsonDocument::kMaxValues; ++i) many += "1,";
   many += "1]";
-  CHECK(faults(many) == "s.json:1:8000002: error: more than 4000000 values; the limit of a scene\n");
+  CHECK(faults(many) == "s.json:1:8000002: error: more than 4000000 values, which is the limit of a scene\n");
 }
 
 TEST_CASE("I20 invalid text is refused") {
@@ -408,8 +408,8 @@ TEST_CASE("errors of the option --set are reported and change nothing") {
         "nor an "
         "array; it has no \"x\"\n");
   CHECK(set_faults(text, "parts=1") ==
-        "--set parts: error: expected a JSON pointer to a value, as /parts/0/name (~ is ~0, / in a key is "
-        "~1)\n");
+        "--set parts: error: expected a JSON pointer to a value, for example /parts/0/name; in a key, ~ is "
+        "written ~0 and / is written ~1\n");
   CHECK(set_faults(text, "/parts") == "--set /parts: error: expected /json/pointer=value\n");
   CHECK(set_faults(text, "/parts=[1,]") ==
         "--set /parts: error: /parts: [1,]; at character 3: a comma before \"]\"; remove it\n");

@@ -74,7 +74,7 @@ using pliant::Simulation;
 using pliant::Vec3;
 
 /// Steps a scene until a time (s). After each step the balance error must be below `max_balance` times the
-/// largest kinetic energy, or times 1 J.
+/// largest kinetic energy so far, or times 1 J if that is larger.
 template <class AfterStep>
 void run(const char* name, double until, double max_balance, AfterStep&& after_step) {
   INFO(name);
@@ -274,7 +274,7 @@ TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and closed jo
   }
 }
 
-TEST_CASE("I59: a scene without parts, and one whose end is its start") {
+TEST_CASE("I59: a scene without parts, and a scene that ends at time 0, are read") {
   for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
     pliant::Diagnostics diagnostics;
     const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
@@ -319,7 +319,7 @@ TEST_CASE("points given by direction or by position are resolved on the rest sha
     const pliant::Part& horn = *point.part;
     return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
   };
-  // A plate away from the origin that is thinner than the distance of the samples on the ray.
+  // The plate is away from the origin, and thinner than the distance between samples on the ray.
   pliant::Diagnostics none;
   const auto plate = pliant::parse_scene("s.json", R"json({
     "parts": [{"name": "plate", "shape": "cylinder", "deformations": ["shear", "bend_offset"],
@@ -352,7 +352,7 @@ TEST_CASE("settings without effect give a warning") {
   CHECK(warnings("\"fixed\": true, \"velocity\": [1, 0, 0]") ==
         "s.json:2:28: warning: /parts/0/velocity: [1, 0, 0]; it has no effect, because the part is fixed\n");
   CHECK(warnings("\"orientation\": {\"quaternion\": [0.7071, 0.7071, 0, 0]}").empty());
-  // Twists finer than the mesh.
+  // These twists are finer than the mesh.
   const std::string twist =
       "\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 31.5}, \"resolution\": ";
   CHECK(warnings(twist + "8") ==
@@ -448,7 +448,8 @@ TEST_CASE("the sleep settings are read") {
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {
-  // Errors that need more than types, keys and ranges: names and numbers that depend on others.
+  // Types, keys and ranges cannot describe these errors: they concern names and numbers that depend on
+  // others.
   const std::vector<std::string> passed{"anchor_not_finite",
                                         "camera_at_its_target",
                                         "coloring_of_unknown_part",

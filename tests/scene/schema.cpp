@@ -321,10 +321,10 @@ TEST_CASE("errors of key frames are reported") {
   CHECK(spring_faults(begin + "{\"t\": [0, 1, 1], \"y\": [0, 1, 2]}") ==
         "s.json:2:71: error: /springs/0/stiffness/t/2: 1; expected a time later than the one before it, 1\n");
   CHECK(spring_faults(begin + "{\"t\": [0, 1], \"y\": [0]}") ==
-        "s.json:2:77: error: /springs/0/stiffness/y: [0]; expected one for each time, that "
+        "s.json:2:77: error: /springs/0/stiffness/y: [0]; expected one entry for each time, that "
         "is 2\n");
   CHECK(spring_faults("\"at\": {\"near\": [0, 0, 0]}, \"to\": {\"t\": [0, 1], \"points\": [[0, 0, 0]]}") ==
-        "s.json:2:58: error: /springs/0/to/points: [[0, 0, 0]]; expected one for each time, that is "
+        "s.json:2:58: error: /springs/0/to/points: [[0, 0, 0]]; expected one entry for each time, that is "
         "2\n");
 }
 

@@ -142,7 +142,7 @@ TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[conta
 }
 
 TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
-  constexpr double kImpact = 0.05, kLast = 12.8;  // s
+  constexpr double kImpact = 0.05, kLast = 12.8;  // longest impact, start of the last second, s
   double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0;
   VecX<double>
       undeformed;  // parameters and displacements of the middle balloon at the last time without contact
@@ -232,7 +232,7 @@ TEST_CASE("closed joints of the dragonfly and the snowman stay closed in every i
         if (!closed[j]) continue;
         INFO(simulation.model().joints()[j].joint->name());
         REQUIRE(modes[j] == JointMode::closed);
-        // Required is a gap below 1e-6 of the length of the body; 5e-14 m has been observed.
+        // The requirement is a gap below 1e-6 of the length of the body. A gap of 5e-14 m has been observed.
         REQUIRE(simulation.model().gap(simulation.state(), static_cast<int>(j)) <= 1e-12);
       }
     });

@@ -12,7 +12,7 @@ namespace pliant {
 /// whole; the side then has no nodes.
 struct ContactSide {
   int part = -1;                                ///< number of the part; -1 for a plane or an obstacle
-  Material<double> material;                    ///< material point of the part
+  Material<double> material;                    ///< material point of the part; not set if at_nodes()
   std::array<int, 3> node{-1, -1, -1};          ///< mesh nodes that define the point; -1: unused entry
   Vec3<double> weight = Vec3<double>::UnitX();  ///< weights of these nodes; their sum is 1
 

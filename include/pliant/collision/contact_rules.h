@@ -23,7 +23,8 @@ double smaller_size(const Model& model, const Contact& contact);
 class ContactRules {
  public:
   /// model: must outlive this object. Throws std::invalid_argument for numbers out of range, for unknown
-  /// names, and for a name that is used twice.
+  /// names, for a name that is used twice, for a group inside a group, and for a pair of one thing with
+  /// itself.
   explicit ContactRules(const Model& model);
 
   /// Returns the rule of two parts, in any order.

@@ -25,9 +25,10 @@ class ContactFinder {
   /// Meshes of the obstacles, in the order of the settings; references stay valid as long as this object.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). marked: one entry
-  /// for each part; if given, only contacts with at least one marked part. Order: part by part, first planes
-  /// and then obstacles; after these all pairs of parts.
+  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). Contacts at which
+  /// neither side can move, because it is immobile or sleeps, are left out. marked: one entry for each part;
+  /// if given, only contacts with at least one marked part are found. Order: part by part, first planes and
+  /// then obstacles; after these all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
                             const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
@@ -49,10 +50,10 @@ class ContactFinder {
     /// Distance that each part may move beyond the prediction without changing this result, m.
     double spare = 0;
 
-    /// Reduces h if two sides move relative to each other by more than max_travel (m) in a step of `whole`
-    /// seconds. travel: their motion at the velocities of the start, m; change: the additional motion by
-    /// the change of these velocities, m. done: whether the step is already done; a small excess is tolerated
-    /// then.
+    /// Reduces spare. Reduces h if two sides move relative to each other by more than max_travel (m) in a
+    /// step of `whole` seconds. travel: their motion at the velocities of the start, m; change: the
+    /// additional motion by the change of these velocities, m. done: whether the step is already done; a
+    /// small excess is tolerated then.
     void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
   /// Returns the neighbourhood of a coming step from time t (s) of h seconds. reach: the displacement by a

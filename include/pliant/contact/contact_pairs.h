@@ -44,7 +44,7 @@ class Pairs {
     const auto [first, last] = range(contact);
     return first != last;
   }
-  /// Returns whether one of the contacts belongs to the pair of this contact and condition(it) is true.
+  /// Returns whether condition(c) is true for a contact c that belongs to the pair of this contact.
   template <class F>
   bool has(const Contact& contact, F&& condition) const {
     const auto [first, last] = range(contact);

@@ -1,5 +1,5 @@
-// Function bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and their
-// responses with joints.
+// Function bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and the changes
+// of velocity that their impulses cause, with the reactions of joints.
 #pragma once
 
 #include <pliant/contact/contact_problem.h>
@@ -15,11 +15,11 @@ namespace pliant {
 
 namespace contact_problem {
 
-/// Joints fix a contact if its response to impulses is below this share of its response without joints. Such
-/// a contact gets no impulse.
+/// Joints fix a contact if its response to impulses (change of relative velocity per impulse) is below this
+/// share of its response without joints. Such a contact gets no impulse.
 inline constexpr double kFixedShare = 1e-9;
 
-/// Returns the normal and two tangents as columns, world.
+/// Returns the normal and two tangents of a contact as columns, unit vectors, world.
 inline Mat3<double> axes(const Contact& contact) {
   const Vec3<double> t = contact.normal.unitOrthogonal();
   Mat3<double> axes;
@@ -78,7 +78,7 @@ PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Conta
   sides_.push_back(std::move(s));
 }
 
-/// Returns a side, zero at first, of a part that moves as a whole.
+/// Returns a side of a part that moves as a whole, with J = 0.
 PLIANT_INLINE ContactProblem::Side ContactProblem::make_side(int part) {
   const int mover = movers_.mover_of_part(part);
   Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
@@ -86,7 +86,8 @@ PLIANT_INLINE ContactProblem::Side ContactProblem::make_side(int part) {
   return side;
 }
 
-/// Adds the columns of J for local coordinates to a side. D: from the body frame to the axes of the contact.
+/// Adds the columns of J for local coordinates to a side. D: 3 x 3, from the body frame to the axes of the
+/// contact, negative for side b.
 PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const {
   const LocalDeformation& local = *model_.parts()[at(side.part)].local;
   const int first = movers_.first_local(movers_[to.mover], side.part),
@@ -148,8 +149,8 @@ PLIANT_INLINE void ContactProblem::add_strings() {
   }
 }
 
-/// Completes the last contact with its sides, and with the responses of the movers, including the reactions
-/// of joints.
+/// Completes the last contact, limit or string: adds its sides, and the responses of the movers with the
+/// reactions of joints. If joints fix the contact (kFixedShare), it gets no responses and thus no impulse.
 PLIANT_INLINE void ContactProblem::complete() {
   const int contact = system_.size() - 1, rows = system_.rows(contact);
   while (system_.movers() < static_cast<int>(movers_.all().size()))
@@ -181,7 +182,8 @@ PLIANT_INLINE void ContactProblem::complete() {
   sides_.clear();
 }
 
-/// Adds the change of the velocities of a mover by unit impulses at a side, without joints, to Y.
+/// Adds the change of the velocities of a mover by unit impulses at a side, without joints, to Y. Y: one
+/// column for each row of the contact; rows: their number.
 PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& side, int rows,
                                                 CoulombSystem::Push& Y) const {
   if (mover.node >= 0) {
@@ -208,7 +210,7 @@ PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& 
     return;
   }
   for (int r = 0; r < rows; ++r) {
-    VecX<double> force = VecX<double>::Zero(m.n_x());  // zero at the points of joints
+    VecX<double> force = VecX<double>::Zero(m.n_x());  // no impulse at attachment points of joints
     force.head(side.J.cols()) = side.J.row(r).transpose();
     work_.parts[at(side.part)].solve_mass(force);
     Y.col(r).segment(side.first, m.n_x()) += force;
@@ -264,7 +266,7 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
   }
   for (const String& string : strings_) {
     double& along = system_.constant(string.contact)[0];
-    along = 0;  // the constant is the rate without the velocities of the movers
+    along = 0;  // the constant is the rate of the string for movers at rest, m/s
     along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
   }
   const CoulombResult result = system_.solve(after_);

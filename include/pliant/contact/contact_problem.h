@@ -13,33 +13,35 @@ namespace pliant {
 
 struct ContactSolution {
   std::vector<Vec3<double>> impulse;   ///< of each contact on side a, N s, world
-  std::vector<Vec3<double>> velocity;  ///< of side a relative to side b afterwards, m/s, world
+  std::vector<Vec3<double>> velocity;  ///< of side a relative to side b after the impulses, m/s, world
   double residual = 0;                 ///< largest violation of Coulomb's law, m/s
-  int sweeps = 0;
-  int fallbacks = 0;  ///< see CoulombResult
+  int sweeps = 0;                      ///< see CoulombResult
+  int fallbacks = 0;                   ///< see CoulombResult
 };
 
 class ContactProblem {
  public:
-  /// work: evaluated with masses and factors for all touched parts, except parts that are moved node by node
-  /// (evaluate_touched). state, contacts and work must outlive this object.
+  /// work: contains the masses and joint factors of all touched parts, except parts that are moved node by
+  /// node (evaluate_touched). state, contacts and work must outlive this object.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
   /// Computes the impulses of contacts, limits and strings. Each contact rebounds with Contact::rebound.
-  /// limit_time: the time Contact::since of the impulses on limits and strings, s.
+  /// limit_time: the time since the impulses on limits and strings acted, s, like Contact::since of a
+  /// contact.
   ContactSolution solve(double limit_time);
-  /// Sets the start value of the impulse of a contact, N s, on side a, world. A value near the solution
-  /// saves all sweeps, as in a pile at rest; a value far from it saves none.
+  /// Sets the start value of the impulse of a contact, N s, on side a, world. A value near the solution, as
+  /// in a pile at rest, saves all sweeps (iterations of the solver). A value far from it saves none.
   void warm_start_at(int contact, const Vec3<double>& impulse);
   /// Returns whether the impulse of a contact can be a start value. Valid after solve().
   bool may_warm_start(int contact) const { return system_.may_warm_start(contact); }
   /// Returns the velocity of side a relative to side b at each contact, m/s, world, with the velocities of
   /// another state.
   std::vector<Vec3<double>> velocities(const State& state) const;
-  /// Bounds the displacements of movers by the impulses. Large impulses with different `since` (on a light
-  /// part between heavy ones) may nearly cancel in velocity, but not in displacement. If a displacement
-  /// exceeds max_time (s) times the change of velocity, it becomes limit_time (s) times this change.
+  /// Limits the displacements of movers that the impulses cause. Large impulses with different times
+  /// Contact::since (on a light part between heavy ones) may nearly cancel in velocity, but not in
+  /// displacement. If a displacement exceeds max_time (s) times the change of velocity, it becomes limit_time
+  /// (s) times this change.
   void bound_shifts(double limit_time, double max_time);
   /// Adds displacements, without friction, that remove the remaining overlaps: each contact opens by at most
   /// its max_separation (m), and overlaps up to `tolerance` (m) may remain.
@@ -51,8 +53,8 @@ class ContactProblem {
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
   auto shift(const Mover& mover) const { return shift_.segment(mover.first, mover.size); }
-  /// Adds the reactions of the joints to the contact impulses: lambda, N s; C_q^T lambda acts on the parts.
-  /// rows: one entry for each row of all joints.
+  /// Adds lambda, N s, to `rows`: the reactions of joints and taut strings to the contact impulses. rows: one
+  /// entry for each row of all joints. C_q^T lambda acts on the parts.
   void add_joint_impulses(VecX<double>& rows) const;
 
  private:
@@ -67,7 +69,8 @@ class ContactProblem {
   struct String {
     int contact, row;
   };
-  /// A side of the contact that is being added.
+  /// A side of the contact that is being added. J: velocity of the side in the axes of the contact, from the
+  /// velocities of its part or node.
   struct Side {
     int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;

@@ -1,5 +1,5 @@
-// Function bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of
-// impacts, and the separation of overlaps.
+// Function bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of impacts
+// (impulses that push bodies into others), and the separation of overlaps.
 #pragma once
 
 #include <pliant/contact/contact_resolution.h>
@@ -22,20 +22,21 @@ namespace pliant {
 
 namespace contact_resolution {
 
-/// Overlapping bodies are separated at this speed, in sizes of the smaller body per second, or at the speed
-/// of their own travel.
+/// Overlapping bodies are separated at most at this speed, in sizes of the smaller body per second, plus the
+/// speed of their own travel.
 inline constexpr double kSeparationSpeed = 1;
 inline constexpr int kMaxSeparationRounds = 16;
 /// Largest number of successive resolutions in a step when impulses push bodies into others (resolve_chain).
 inline constexpr int kMaxChainLinks = 4;
-/// Overlaps below this share of the gap of resting contacts are not separated.
+/// Overlaps below this share of the largest gap of a resting contact (RestingContacts::tight_gap) are not
+/// separated.
 inline constexpr double kAllowedOverlap = 1e-4;
 /// Overlaps of this many units in the last place of the positions are not separated either.
 inline constexpr double kRoundingUlps = 16;
-/// Meshes may overlap by this multiple of the gap of resting contacts.
+/// Meshes may overlap by this multiple of that gap.
 inline constexpr double kMeshOverlap = 800;
-/// A contact is the same as one of the last step if their contact points are nearer than this share of the
-/// size of the smaller body.
+/// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
+/// than this share of the size of the smaller body.
 inline constexpr double kSameContact = 0.05;
 /// Largest number of warm-started steps in a row.
 inline constexpr int kMaxWarmStartAge = 10;
@@ -93,8 +94,8 @@ PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide
   return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
 }
 
-/// Returns the distance (m) by which a contact may be opened in a step of h seconds: at kSeparationSpeed, and
-/// by the travel of its bodies.
+/// Returns the distance (m) by which a contact may be opened in a step of h seconds: the distance at
+/// kSeparationSpeed plus the travel of its bodies.
 PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contact, double h) const {
   double distance = contact_resolution::kSeparationSpeed * h * smaller_size(dynamics_.model(), contact);
   for (const ContactSide* side : {&contact.a, &contact.b})
@@ -102,8 +103,8 @@ PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contac
   return distance;
 }
 
-/// Returns the contact point in the frame of part a, m. There the point of a resting contact stays the same
-/// while the bodies move.
+/// Returns the contact point in the frame of part a, m. In this frame the contact point of a resting contact
+/// stays the same while the bodies move.
 PLIANT_INLINE Vec3<double> ContactResolution::local_position(const Contact& contact, const State& state,
                                                              double t) const {
   const Model& model = dynamics_.model();
@@ -123,7 +124,8 @@ PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
       state.contact_cache.empty() || state.contact_cache_age >= contact_resolution::kMaxWarmStartAge;
 }
 
-/// Sets the start values of the impulses to those of the cached forces over h seconds.
+/// Sets the start values of the impulses to those of the cached forces over h seconds. Contacts that are not
+/// in the cache start from zero, and so do all contacts of a cold start.
 PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, double h,
                                                  const std::vector<Contact>& contacts,
                                                  ContactProblem& problem) const {
@@ -201,9 +203,9 @@ PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double 
   }
 }
 
-/// Computes the impulses, and adds their work and residual to the state and the counters. The work of an
-/// impulse is that of a constant force over the motion, to second order. warm: whether the impulses start
-/// from the contact cache.
+/// Computes the impulses and limits the displacements that they cause. Adds their work and residual to the
+/// state and the counters, and the reactions of joints to the record. The work of an impulse is that of a
+/// constant force over the motion, to second order. warm: whether the impulses start from the contact cache.
 PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const ResolvedMotion& motion,
                                                        const std::vector<Contact>& contacts, bool warm,
                                                        ContactProblem& problem) {
@@ -239,7 +241,8 @@ PLIANT_INLINE void ContactResolution::append_to_record(const std::vector<Contact
   }
 }
 
-/// Resolves contacts once. warm: see solve().
+/// Resolves contacts once: applies the impulses, the displacements that they cause and their works. Then
+/// separates overlaps, unless motion.h is zero. warm: see solve().
 PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
                                                    std::vector<Contact> contacts, bool warm) {
   const State& before = motion.before;
@@ -264,9 +267,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   apply_solution(problem, dynamics_.model(), step.work, state);
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // Methods with a reach of 1 compute the work of forces from the velocities at the start of the step; this
-  // work is zero for resting parts. For other methods the displacement by the impulses changes the work of
-  // forces.
+  // Methods with a reach of 1 (FreeMotion::reach) compute the work of forces from the velocities at the start
+  // of the step; this work is zero for resting parts. For other methods the displacement by the impulses
+  // changes the work of forces.
   if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (h > 0) separate_overlaps(step);
   project_limits(step);

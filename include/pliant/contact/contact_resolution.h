@@ -44,8 +44,8 @@ class ContactResolution {
   /// Stores the impulses of this step of h seconds in the contact cache of a state.
   void end_step(double h, State& state) const;
 
-  /// Applies the impulses at the contacts at step.t, the end of a motion, with the displacements by them
-  /// (Contact::since), and then separates bodies that still overlap.
+  /// Applies the impulses at the contacts at step.t, the end of a motion, and the displacements that these
+  /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
   /// during the motion of step.h seconds, and the impacts that follow. Impacts slower than min_impact_speed
@@ -94,8 +94,8 @@ class ContactResolution {
   std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // Travel of each part, m: towards the bodies that it meets, and by ejections, the displacements by
-  // impulses.
+  // Travel of each part, m: the distance towards the bodies that it meets, plus its displacements by impulses
+  // (ejections).
   std::vector<double> travel_;
   VecX<double> q_before_ejection_;
   // Pairs whose overlap was too deep to be separated in one step, and that have been separated by the allowed

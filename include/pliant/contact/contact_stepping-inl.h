@@ -21,7 +21,7 @@ namespace pliant {
 
 namespace contact_stepping {
 
-/// Slower impacts do not rebound; in units of the speed that gravity gives a body in a step.
+/// Impacts below this speed do not rebound. Unit: the speed that gravity gives a body in a step.
 inline constexpr double kMinImpactSpeed = 1e-3;
 /// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up to
 /// the speed that gravity gives a body in a step.
@@ -33,7 +33,8 @@ inline constexpr std::ptrdiff_t kMaxLocatedParts = 8;
 /// Largest number of motions in a step. A motion is so short that no part passes through another.
 inline constexpr double kMaxMotions = 1e4;
 inline constexpr int kMaxLocatedImpacts = 200;
-/// At a located impact, surfaces touch if their gap is below this share of the gap of resting contacts.
+/// At a located impact, surfaces touch if their gap is below this share of the largest gap of a resting
+/// contact.
 inline constexpr double kTouchingGap = 1e-6;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
@@ -100,7 +101,7 @@ struct ContactStepping::Progress {
   StepContext& step;
   double begin, end, now;  ///< s
   double time_tolerance;   ///< times closer than this are equal, s
-  double longest;          ///< longest next motion, s: in a longer one, parts moved farther than predicted
+  double longest;  ///< largest length of the next motion, s; in a longer one, parts would move too far
   double min_impact_speed, max_resting_speed;  ///< see FreeMotion, m/s
   /// Whether a part that deforms locally came near another body although this was not predicted.
   bool soft_nearby;
@@ -115,7 +116,7 @@ struct ContactStepping::Progress {
 /// One motion of the method within a step, and the contacts that it may cause.
 struct ContactStepping::Motion {
   FreeMotion free;
-  ContactFinder::Neighbourhood predicted, travelled;  ///< predicted; from the actual travel
+  ContactFinder::Neighbourhood predicted, travelled;  ///< before the motion; from the actual travel
   std::vector<Contact> resting;                       ///< resting contacts at its start
   std::vector<Contact> contacts;                      ///< contacts at its end
 
@@ -131,7 +132,7 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   double length = h;
   while (!progress.finished()) {
     Motion motion = advance(progress);                        // 1 predict, 2 advance, 3 detect
-    if (!state.q.allFinite() || !state.v.allFinite()) break;  // the caller reports it
+    if (!state.q.allFinite() || !state.v.allFinite()) break;  // the caller reports the failure
     if (motion.is_free()) {
       progress.now = motion.free.end();
       continue;

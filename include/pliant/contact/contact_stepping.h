@@ -1,8 +1,8 @@
 // Steps of bodies that touch, around any method of integration. A step without contact is the step of the
 // method. An impact is located in time, and its impulses act at that time. At resting contacts, impulses
 // stand for forces that are constant over the step, so that resting and sticking bodies keep their
-// coordinates to the last bit. If many impacts happen in one step, they are resolved at its end (README.md of
-// this folder).
+// coordinates to rounding. If many impacts happen within one motion (the step or a part of it), they are
+// resolved together at its end (README.md of this folder).
 #pragma once
 
 #include <vector>

@@ -21,7 +21,7 @@ namespace impact_timing {
 /// time is known to kTimeTolerance of the motion.
 inline constexpr double kGapTolerance = 1e-13, kTimeTolerance = 1e-15;
 inline constexpr int kMaxTrials = 60;
-/// Sides are apart if their gap is larger than this, in sizes of the smallest part.
+/// The sides of an impact are apart if their gap is larger than this, in sizes of the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
 /// Sides that touch at the start, and are not apart after 2^-kMaxHalvings of the motion, touch all the time.
 inline constexpr int kMaxHalvings = 20;
@@ -140,8 +140,8 @@ class ImpactGap {
 /// time.
 inline Bracket bracket_impact(ImpactGap& gap, double gap_at_start, double h) {
   Bracket bracket{0, gap_at_start, h, gap.at_time(h)};
-  // Sides that touch at the start may separate and meet again: then they are apart after a share of the
-  // motion.
+  // Sides that touch at the start may separate and meet again. Halvings of the interval find a time at which
+  // they are apart.
   if (!(gap_at_start > kClearGap * gap.size())) bracket.f_low = 0;
   for (int i = 0; i < (gap_at_start > 0 ? kMaxTrials : kMaxHalvings) && !(bracket.f_low > 0); ++i) {
     const double tau = 0.5 * bracket.high, f = gap.at_time(tau);

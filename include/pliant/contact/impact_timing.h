@@ -25,8 +25,10 @@ std::optional<double> locate_impact(StepContext& step, const ContactFinder& find
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 
 /// Sets Contact::since of contacts at the end of a motion: the time since their sides met, s, at their
-/// present normal velocity, or force_time() of the motion if the sides do not overlap or do not approach.
-/// Sets Contact::rebound too. Contacts whose `since` is positive, the resting contacts, do not change.
+/// present normal velocity, at most the length of the motion. If the sides do not overlap or do not approach,
+/// the time is force_time() of the motion. Sets Contact::rebound of overlapping sides that approached faster
+/// than motion.min_impact_speed already at the start of the motion. Contacts whose `since` is positive, the
+/// resting contacts, do not change.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

@@ -1,5 +1,5 @@
-// Function bodies of load_work.h: the work of forces and torques during a displacement. Both are evaluated at
-// its end.
+// Function bodies of load_work.h: the work of forces and torques during a displacement. Forces and torques
+// are evaluated at the end of the displacement.
 #pragma once
 
 #include <pliant/contact/load_work.h>

@@ -12,7 +12,7 @@ class LoadWork {
  public:
   /// from: the state before the displacement.
   LoadWork(const Dynamics& dynamics, const State& from);
-  /// Returns the work of the loads at time t (s) for the displacement to a state, J.
+  /// Returns the work of the forces and torques at time t (s) during the displacement to the state `to`, J.
   double work_until(double t, const State& to);
 
  private:

@@ -19,7 +19,7 @@ namespace resting_contacts {
 
 /// Largest gap of a resting contact, in sizes of the smaller part.
 inline constexpr double kRestingGap = 1e-6;
-/// The residual of the contact solution may add at most this multiple of the gap.
+/// The residual of the contact solution may widen this gap by at most this multiple of the gap.
 inline constexpr double kMaxWidening = 1000;
 /// If at most this share of the parts has moved, only these parts are searched again.
 inline constexpr double kFewMovedParts = 0.7;
@@ -87,7 +87,8 @@ PLIANT_INLINE const std::vector<Contact>& RestingContacts::near(const State& sta
   return last_;
 }
 
-/// Returns whether a contact with this gap (m) and this normal velocity (m/s) rests.
+/// Returns whether a contact with this gap (m) and this normal velocity (m/s) rests. A contact that overlaps
+/// by more than the largest gap of resting contacts rests at any velocity.
 PLIANT_INLINE bool RestingContacts::is_resting(const Contact& contact, double gap, double velocity,
                                                double max_speed) const {
   const double max_gap = this->gap(contact);

@@ -30,7 +30,8 @@ class RestingContacts {
   /// Returns the longest motion (s) in which contacts that rest at the start sink by at most
   /// ContactFinder::thin, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
-  /// Predicts the length of the longest motion (s) before the motion, for gravity (m/s^2) alone.
+  /// Predicts the length of this longest motion (s) at the start of the motion, with gravity (m/s^2) as the
+  /// only force.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
   /// Returns the contacts at `state`, the end of a motion: those that overlap, and those that rested at the
   /// start and are still near, because rounding or the motion may have opened them. Contact::since of resting

@@ -32,22 +32,25 @@ inline bool differs(const TimeVector& x, double t, double h) {
 inline bool is_prescribed(const Point& point) {
   return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
 }
-/// Returns whether the prescribed motion of a part, or of a point, changes its position within h seconds
-/// after t.
+/// Returns whether the prescribed motion of a part moves or rotates the part within h seconds after t.
 inline bool moves(const Part& part, double t, double h) {
   const PrescribedMotion* motion = part.motion();
   if (motion == nullptr) return false;
   const MovingFrame now = motion->at(t), half = motion->at(t + 0.5 * h), then = motion->at(t + h);
   return now.c != then.c || now.R != then.R || now.c != half.c || now.R != half.R;
 }
+/// Returns whether a point of the world, or a part with prescribed motion that has the point, moves within h
+/// seconds after t.
 inline bool moves(const Point& point, double t, double h) {
   return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
 }
 
-/// Returns whether a torque changes in time, by its value or by the axes of a part with prescribed motion.
+/// Returns whether a torque can change in time: by its value, or because its axes are those of a part with
+/// prescribed motion.
 inline bool is_prescribed(const Torque& torque) {
   return !torque.torque.is_constant() || (torque.frame == Frame::body && torque.part->motion() != nullptr);
 }
+/// Returns whether such a torque changes within h seconds after t.
 inline bool changes(const Torque& torque, double t, double h) {
   return differs(torque.torque, t, h) || (torque.frame == Frame::body && moves(*torque.part, t, h));
 }
@@ -74,7 +77,8 @@ PLIANT_INLINE Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& rest
   find_switches();
 }
 
-/// Finds the prescribed motions, forces and rest values that change in time and act on parts.
+/// Finds the drives that change in time: rest values, forces, torques, prescribed motions at springs and
+/// joints, and gravity.
 PLIANT_INLINE void Sleeping::find_drives() {
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];
@@ -192,7 +196,7 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
   }
 }
 
-/// Returns an upper bound of the speed of all material points of a part, m/s. The angular velocity is
+/// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity is
 /// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
@@ -205,8 +209,9 @@ PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   return speed;
 }
 
-/// Adds h seconds to the time at rest of each part that is at rest, and sets that of moving parts to zero.
-/// Returns whether a part has been at rest for long enough to sleep.
+/// Adds h seconds to the time at rest of each part that is at rest, up to Sleep::after, and sets that of
+/// moving parts to zero. Sleeping parts do not change. Returns whether a part has been at rest for long
+/// enough to sleep.
 PLIANT_INLINE bool Sleeping::update_rest_times(double h, State& state) const {
   bool any = false;
   for (const int i : moving_) {

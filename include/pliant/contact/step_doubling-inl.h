@@ -29,7 +29,7 @@ inline constexpr double kAtRestTolerance = 1e-2;
 /// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
 /// A difference is a jump if it exceeds this multiple of the speed that gravity gives a body in the step.
 /// Then the error is measured by the displacement that the jump causes in the step, if the step is no longer
-/// than longest_contact_step().
+/// than longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
@@ -44,8 +44,8 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
 }
 
 /// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact, and zero for
-/// other parts; n_v numbers. before: the resting contacts before; now: the present contacts. t:
-/// time, s.
+/// other parts; n_v numbers. before: contacts that rested in the whole step; now: contacts that its first
+/// half has resolved. t: time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
                                        double t) {
@@ -160,8 +160,8 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   return halves;
 }
 
-/// Returns whether the whole step and its halves have equal modes and numbers of contacts. has_impact:
-/// whether the halves ended at an impact.
+/// Returns whether the whole step and its halves have equal modes of joints, limits and sleep, and equal
+/// numbers of contacts. has_impact: whether the halves ended at an impact.
 PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_impact,
                                           const State& state) const {
   return halves.first == 0.5 * whole.length && has_impact == whole.has_impact &&

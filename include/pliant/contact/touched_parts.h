@@ -12,7 +12,8 @@ std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& c
 /// Returns whether a joint in the islands of some parts follows a prescribed path.
 bool are_driven(const Model& model, const std::vector<int>& parts);
 /// Evaluates the quantities that ContactProblem needs at a state and a time t (s), and stores them in work:
-/// masses and joint factors of the touched parts, except of parts that are moved node by node.
+/// masses and joint factors of the touched parts, except of parts that are moved node by node. For such a
+/// part that is touched as a whole, also the response of its joints (LocalDeformation::compliance).
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work);
 /// Applies a solution to a state: sets the velocities after the impulses, and adds the displacements. work:

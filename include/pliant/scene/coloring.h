@@ -32,8 +32,8 @@ std::optional<SurfaceQuantity> find_quantity(const std::string& name);
 struct Coloring {
   SurfaceQuantity by = SurfaceQuantity::strain;
   /// Values of the first and the last colour; values outside the range get the nearer of these two colours.
-  /// When absent, the range is from 0 to the 99th percentile of all vertices in the whole recorded motion,
-  /// rounded up.
+  /// When absent, the range is from 0 to the 99th percentile of the values at all vertices in the whole
+  /// recorded motion, rounded up.
   std::optional<std::array<double, 2>> range;
   std::vector<const Part*> parts;  ///< coloured parts; empty: all parts that deform
 };

@@ -1,4 +1,4 @@
-// Contact search of parts that deform locally, and their part of a neighbourhood.
+// Contact search of parts that deform locally, and their contribution to a neighbourhood.
 #include <pliant/collision/mesh/mesh_finder.h>
 
 #include <algorithm>

@@ -169,8 +169,8 @@ class NearestOf {
       centres_.row(k) = faces[static_cast<std::size_t>(k)].centre.transpose();
   }
 
-  /// Returns the face nearest to x among the faces for which is_candidate(face) is true; without a face if
-  /// none is.
+  /// Returns the face nearest to x among the faces for which is_candidate(face) is true. NearestFace::face is
+  /// nullptr if there is none.
   template <class F>
   NearestFace operator()(const Vec3<double>& x, F&& is_candidate) {
     NearestFace best;
@@ -213,10 +213,10 @@ class NearestOf {
   Eigen::ArrayXd squared_distances_;  // from the centres of the faces to x, m^2
 };
 
-/// Appends the overlaps of vertices of one mesh that are behind faces of the other mesh. one: all vertices of
-/// the first mesh. all: whether `faces` has all faces of the other mesh nearby; then a vertex that is behind
-/// its nearest face but not straight behind it, as in a dent, is inside too. one_is_a: whether `one` is side
-/// a of the result.
+/// Appends the overlaps of vertices of one mesh that are behind faces of the other mesh. one: positions of
+/// all vertices of the first mesh. vertices: numbers of the vertices to test. all: whether `faces` has all
+/// faces of the other mesh nearby; then a vertex that is behind its nearest face but not straight behind it,
+/// as in a dent, is inside too. one_is_a: whether `one` is side a of the result.
 void add_vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
                          const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
                          std::vector<MeshTouch>& found) {

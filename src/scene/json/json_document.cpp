@@ -174,7 +174,8 @@ void JsonDocument::set(const std::string& pointer, const std::string& text, Diag
   std::vector<std::string> keys;
   if (!split(pointer, &keys) || keys.empty()) {
     faults.add({option, 0, 0, "",
-                "expected a JSON pointer to a value, as /parts/0/name (~ is ~0, / in a key is ~1)",
+                "expected a JSON pointer to a value, for example /parts/0/name; in a key, ~ is written ~0 "
+                "and / is written ~1",
                 Severity::kError});
     return;
   }

@@ -158,8 +158,9 @@ class Builder final : public nlohmann::json_sax<json> {
 
   bool add(std::size_t begin, JsonValue::Content content) {
     if (++count_ > JsonDocument::kMaxValues) {
-      throw Fault{begin, "",
-                  "more than " + std::to_string(JsonDocument::kMaxValues) + " values; the limit of a scene"};
+      throw Fault{
+          begin, "",
+          "more than " + std::to_string(JsonDocument::kMaxValues) + " values, which is the limit of a scene"};
     }
     JsonValue value(place(begin), std::move(content));
     if (open_.empty()) {

@@ -8,8 +8,8 @@ namespace pliant {
 
 /// Returns the record of a local deformation.
 schema::Record local_record();
-/// Returns the type of the elastic material of a part without nodes. Its laws have the names and numbers of
-/// the laws of nodes.
+/// Returns the type of the elastic material of a part without nodes. Its laws have the names and material
+/// numbers of the laws for local deformation.
 schema::Type elasticity_type();
 
 }  // namespace pliant

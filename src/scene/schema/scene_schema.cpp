@@ -78,7 +78,7 @@ Type orientation() {
       .expecting("{\"quaternion\": [w, x, y, z]} or {\"axis\": [x, y, z], \"angle\": radians}");
 }
 
-/// The record of a part or a material: `more` and the keys that both have.
+/// Returns the record of a part or a material: the fields `more`, then the fields that both have.
 Record damping_fields(std::string record_name, std::string description, std::vector<Field> more) {
   std::vector<Field> fields = std::move(more);
   fields.push_back(optional("density", number(above(0), "kg/m^3"),
@@ -238,9 +238,9 @@ Record track_record() {
 Record output_record() {
   return {
       "output",
-      "Recorded states, tables and frames.",
-      {optional("frame_rate", number(above(0), "1/s"), "Recorded states and frames per second.", "25"),
-       optional("size", array(integer(between(16, 8192)), 2, 2), "Width and height of frames, pixels.",
+      "Recorded states, tables and pictures.",
+      {optional("frame_rate", number(above(0), "1/s"), "Recorded states and pictures per second.", "25"),
+       optional("size", array(integer(between(16, 8192)), 2, 2), "Width and height of pictures, pixels.",
                 "[640, 480]"),
        optional("every_part", boolean(),
                 "Whether trajectory.csv has columns for every part and joint, in addition to tracks and "
@@ -254,7 +254,7 @@ Record output_record() {
 
 Record camera_record() {
   return {"camera",
-          "Camera of the frames; when absent, it is chosen from the motion.",
+          "Camera of the pictures; when absent, it is chosen from the motion.",
           {optional("eye", vector3("m"), "Position of the camera."),
            optional("target", vector3("m"), "Point in the middle of the picture."),
            optional("field_of_view", number(between(5, 120), "degrees"), "Vertical field of view.", "35")}};
@@ -262,7 +262,7 @@ Record camera_record() {
 
 Record light_record() {
   return {"light",
-          "The key light.",
+          "The main light.",
           {optional("direction", vector3("1"), "Direction towards the light."),
            optional("shadows", boolean(), "Whether it casts shadows.", "true")}};
 }
@@ -299,10 +299,10 @@ Record make_scene_record() {
        optional("forces", array(record(force_record())), "Forces at material points.", "[]"),
        optional("torques", array(record(torque_record())), "Torques on parts.", "[]"),
        optional("tracks", array(record(track_record())), "Material points whose paths are recorded.", "[]"),
-       optional("output", record(output_record()), "Recorded states, tables and frames.", "{}"),
+       optional("output", record(output_record()), "Recorded states, tables and pictures.", "{}"),
        optional("coloring", record(coloring_record()), "Colours of parts by their deformation."),
-       optional("camera", record(camera_record()), "Camera of the frames.", "{}"),
-       optional("light", record(light_record()), "The key light.", "{}"),
+       optional("camera", record(camera_record()), "Camera of the pictures.", "{}"),
+       optional("light", record(light_record()), "The main light.", "{}"),
        optional("ground", record(ground_record()), "The drawn ground.", "{}")}};
 }
 

@@ -20,6 +20,7 @@ class MeshFinder {
   /// model, obstacles: must outlive this object.
   MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
+  /// Returns whether no part that deforms locally may touch anything.
   bool empty() const { return meshes_.empty(); }
   /// Appends the contacts of surfaces that overlap at a state and a time t (s).
   void find(const State& state, double t, std::vector<Contact>& found) const;

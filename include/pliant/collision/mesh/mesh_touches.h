@@ -27,7 +27,7 @@ struct MeshPoint {
 
 struct MeshTouch {
   MeshPoint a, b;
-  Vec3<double> x;       ///< m, world
+  Vec3<double> x;       ///< the vertex, or the point on the edge of a, m, world
   Vec3<double> normal;  ///< unit vector out of b, world
   double gap;           ///< m, negative
 };
@@ -35,9 +35,9 @@ struct MeshTouch {
 /// Appends the overlaps of two meshes. Their order is determined by the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
 /// Appends the overlaps of a mesh with an obstacle. For a vertex of a behind the obstacle, MeshTouch::b is
-/// not set. Overlaps deeper than `deepest` (m) are ignored: the vertex came from another side of the
-/// obstacle. A vertex whose outward direction agrees with the normal of a triangle is not behind that
-/// triangle.
+/// not set. Overlaps deeper than `deepest` (m) are ignored, because such a vertex may have come from another
+/// side of the obstacle. A vertex whose outward direction agrees with the normal of a triangle is not behind
+/// that triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

@@ -28,7 +28,7 @@ class JsonDocument {
   /// fault. Faults that leave the syntax intact (duplicate keys, numbers that round to zero, NUL in a string)
   /// are added to `faults`, and reading continues.
   static JsonDocument read(const std::string& path, Diagnostics& faults);
-  /// Reads a text; `name` replaces the file name in messages. Errors as read().
+  /// Reads a text; `name` replaces the file name in messages. Throws and reports faults as read() does.
   static JsonDocument parse(std::string name, std::string text, Diagnostics& faults);
 
   const JsonValue& root() const { return root_; }

@@ -52,7 +52,7 @@ using ReportAt = std::function<void(const JsonValue& where, const std::string& m
 /// A rule beyond types and ranges; called only for a value whose type, ranges and keys have no fault.
 using Check = std::function<void(const JsonValue& value, const ReportAt& report)>;
 
-/// The type of a value, made by the functions below.
+/// The type of a value, made by the functions below. The comment of a member names the kinds that use it.
 struct Type {
   enum class Kind {
     kNumber,
