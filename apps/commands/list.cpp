@@ -25,7 +25,8 @@ std::string text_of(double x) {
 }
 
 std::string range_text(const pliant::Range& range, bool relative) {
-  return "[" + text_of(range.min) + ", " + text_of(range.max) + "]" + (relative ? " times rest" : "");
+  return "[" + text_of(range.min) + ", " + text_of(range.max) + "]" +
+         (relative ? " times the rest value" : "");
 }
 
 void print_parameters(const pliant::ParameterSpec* specs, std::size_t count) {

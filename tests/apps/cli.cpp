@@ -153,6 +153,7 @@ TEST_CASE("commands that print information exit with 0 and write no files") {
   const Result schema = place.pliant("schema");
   CHECK(Json::parse(schema.out).contains("properties"));
   CHECK(schema.out == bytes_of(fs::path(PLIANT_SCENES) / "pliant-scene.schema.json"));
+  // The folder contains top.json and the captured output (.out, .err) only.
   CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
 }
 
