@@ -34,8 +34,10 @@ void add_color_options(CLI::App& command, ColorOptions& options) {
                            "Colours in pictures: \"part\" for the own colour of each part, or a quantity of "
                            "the deformation [as in the scene]");
   command
-      .add_option("--color-range", options.range,
-                  "Values of the first and the last colour [0 to the largest recorded value]")
+      .add_option(
+          "--color-range", options.range,
+          "Values of the first and the last colour [as in the scene, or 0 to the 99th percentile of the "
+          "recorded values, rounded up]")
       ->expected(2)
       ->check(any_number())
       ->needs(by)

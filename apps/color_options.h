@@ -11,8 +11,8 @@
 namespace pliant_cli {
 
 struct ColorOptions {
-  std::string by;  ///< "part", or the name of a quantity; empty for the setting of the scene
-  std::vector<double> range;
+  std::string by;             ///< "part", or the name of a quantity; empty for the setting of the scene
+  std::vector<double> range;  ///< values of the first and the last colour; empty if not set
 };
 /// Declares --color-by and --color-range.
 void add_color_options(CLI::App& command, ColorOptions& options);
@@ -20,7 +20,9 @@ void add_color_options(CLI::App& command, ColorOptions& options);
 void add_color_by(CLI::App& command, ColorOptions& options);
 /// Throws CLI::ValidationError if the range is not increasing.
 void check_colors(const ColorOptions& options);
-/// Sets the colouring of a scene as the options require.
+/// Sets the colouring of a scene by the options. Without --color-by, the scene does not change. "part"
+/// removes the colouring. A quantity other than that of the scene also removes the range of values of the
+/// scene.
 void apply_colors(const ColorOptions& options, pliant::Scene& scene);
 
 }  // namespace pliant_cli

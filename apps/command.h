@@ -14,6 +14,7 @@ namespace pliant_cli {
 /// reports.
 using Action = std::function<int()>;
 
+/// command_line: the words of the command line; the run records them in run.json.
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line);
 void add_check(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

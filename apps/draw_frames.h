@@ -10,11 +10,13 @@
 
 namespace pliant_cli {
 
-/// Opens a context and closes it again. Returns its description for run.json, for example "OSMesa: llvmpipe,
-/// OpenGL 4.5". Throws ResourceFailure if none opens.
+/// Opens a graphics context and closes it again. backend: graphics library; `automatic` tries all of them.
+/// Returns a description of the context for run.json, for example "OSMesa: llvmpipe, OpenGL 4.5". Throws
+/// ResourceFailure if no context opens.
 std::string require_graphics(pliant::GlBackend backend);
 
-/// Calls pliant::render_frames. Throws ResourceFailure if no graphics library opens.
+/// Draws frames of a run as PNG files by pliant::render_frames (film.h), which describes the arguments.
+/// Throws ResourceFailure if no graphics context opens.
 void draw_frames(const std::filesystem::path& folder, const pliant::FilmSource& source, double frame_rate,
                  const std::vector<std::int64_t>& frames, pliant::Progress& progress,
                  pliant::GlBackend backend);

@@ -8,13 +8,13 @@ enum ExitCode {
   kInternal = 1,
   kCommandLine = 2,
   kInput = 3,
-  kUnsatisfiable = 4,
+  kUnsatisfiable = 4,  // joints contradict each other
   kNumerical = 5,
   kFileSystem = 7,
   kResources = 8,
   kWouldOverwrite = 9,
-  kDoesNotFit = 10,
-  kSignal = 128,  // plus the number of the signal
+  kDoesNotFit = 10,  // the recording does not match the scene or the program
+  kSignal = 128,     // plus the number of the signal
 };
 
 inline constexpr const char* kExitCodesHelp =

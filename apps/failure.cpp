@@ -29,7 +29,8 @@ int report(const char* what, int code) {
   return code;
 }
 
-// Returns the names that a message can suggest for an option that does not exist.
+// Returns the names of the options of a command. A message suggests one of them for an option that does not
+// exist.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -46,6 +47,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+// Returns the messages about the words of the command line that CLI11 could not assign; empty if there are
+// none. Every message but the first begins with a line break and "pliant: error: ".
 std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
   std::vector<std::string> words = app.remaining(true);
   if (&command == &app && words.size() > 1) words.resize(1);  // the first word should be a command

@@ -17,8 +17,8 @@ class ResourceFailure : public std::runtime_error {
 /// for this exception.
 int reporting_failures(const std::function<int()>& task);
 
-/// Reports a command line that could not be parsed and returns its exit code. Prints help and version too,
-/// with exit code 0.
+/// Reports a command line that could not be parsed and returns kCommandLine (exit_codes.h). If the command
+/// line asks for help or the version, prints the answer on standard output and returns kDone.
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pliant_cli

@@ -10,7 +10,7 @@
 
 namespace pliant_cli {
 
-/// Declares --gl.
+/// Declares --gl, which sets `backend`.
 void add_graphics_option(CLI::App& command, pliant::GlBackend& backend);
 
 }  // namespace pliant_cli

@@ -17,7 +17,7 @@ int run_command(int argc, char** argv) {
       "pliant simulates deformable solid primitives: scenes in JSON, motion as tables, meshes and pictures."};
   app.name("pliant");
 #if CLI11_VERSION_MAJOR > 2 || (CLI11_VERSION_MAJOR == 2 && CLI11_VERSION_MINOR >= 6)
-  app.get_formatter()->enable_footer_formatting(false);  // examples and tables keep their lines
+  app.get_formatter()->enable_footer_formatting(false);  // examples and tables keep their line breaks
 #endif
   app.require_subcommand(1);
   app.set_version_flag("--version", pliant_cli::version_text(),

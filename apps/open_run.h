@@ -16,16 +16,18 @@ struct OpenRun {
   std::unique_ptr<pliant::Model> model;
   std::unique_ptr<pliant::Recording> recording;
 
-  /// Number of frames up to the last recorded time.
+  /// Returns the number of frames up to the last recorded time.
   std::int64_t frames() const;
 };
 
-/// Opens the run in a folder. Throws pliant::FileError if there is none, and pliant::RecordingMismatch if
-/// this program cannot read it.
+/// Opens the run in a folder. Throws pliant::FileError if the folder has no run. Throws
+/// pliant::RecordingMismatch if the scene is missing or was changed, if the recording is damaged or has no
+/// state, or if this program cannot read a file.
 OpenRun open_run(const std::filesystem::path& folder);
 
-/// Makes a folder for frames if there is none. ending: extension of the file names. Throws
-/// pliant::OutputRefused if a file of one of the frames exists and `force` is false.
+/// Makes a folder for frames, and its parent folders, if they do not exist. frames: numbers of the frames.
+/// ending: extension of the file names. Throws pliant::OutputRefused if a file of one of the frames exists
+/// and `force` is false.
 void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,
                           const std::string& ending, bool force);
 

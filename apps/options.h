@@ -1,5 +1,5 @@
-// Checks of option values. The whole text of a value must be a valid number. The check does not depend on
-// the locale.
+// Validators of option values. A validator accepts a value only if its whole text is a valid number. The
+// result does not depend on the locale.
 #pragma once
 
 #include <string>
@@ -10,32 +10,33 @@
 
 namespace pliant_cli {
 
-/// A number > 0, finite.
+/// Returns a validator that accepts finite numbers > 0.
 CLI::Validator positive_number();
-/// A number >= 0, finite.
+/// Returns a validator that accepts finite numbers >= 0.
 CLI::Validator number_from_zero();
-/// A number from min to max.
+/// Returns a validator that accepts numbers from min to max, both included.
 CLI::Validator number_between(double min, double max);
-/// A finite number.
+/// Returns a validator that accepts finite numbers.
 CLI::Validator any_number();
-/// A whole number from 1 to max.
+/// Returns a validator that accepts whole numbers from 1 to max.
 CLI::Validator count_up_to(int max);
 
-/// "640x480": width and height in pixels, each from 1 to 8192.
+/// The size of a picture in pixels.
 struct PictureSize {
   int width = 0, height = 0;
 };
+/// Returns a validator that accepts sizes such as "640x480", with width and height from 1 to 8192.
 CLI::Validator picture_size();
-/// Returns the size; width and height are 0 if the text is no valid size.
+/// Returns the size that a text such as "640x480" gives; width and height are 0 if the text is no valid size.
 PictureSize parse_picture_size(const std::string& text);
 
-/// The selection of frames of a run: --frames and --shard.
+/// The texts of --frames (default: all frames) and --shard (empty: no shard); FrameRange explains them.
 struct FrameOptions {
   std::string frames = ":", shard;
 };
 /// Declares --frames and --shard.
 void add_frame_options(CLI::App& command, FrameOptions& options);
-/// Returns the selected frames. Throws std::invalid_argument if the options have a fault.
+/// Returns the selection of frames. Throws std::invalid_argument if one of the texts is not valid.
 pliant::FrameRange parse_frames(const FrameOptions& options);
 
 }  // namespace pliant_cli

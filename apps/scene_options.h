@@ -12,8 +12,8 @@
 namespace pliant_cli {
 
 struct SceneOptions {
-  std::string file;
-  std::vector<std::string> overrides;
+  std::string file;                    ///< name of the scene file; "-" for standard input
+  std::vector<std::string> overrides;  ///< the values of --set: "/json/pointer=value"
 };
 
 /// Declares the argument SCENE and the option --set.
@@ -22,7 +22,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 /// pliant::FileError.
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options);
 
-/// Returns the linear solvers that are linked into this program.
+/// Returns the solver of the joint equations: with CHOLMOD and its order of blocks if SuiteSparse is linked
+/// into this program, otherwise with Eigen.
 pliant::JointSolver solvers();
 
 }  // namespace pliant_cli

@@ -1,5 +1,5 @@
-# Functions of apps/quickstart.sh, tests/run.sh and .ci/run: the Debian packages, their installation, and the build with a
-# preset. Source this file from POSIX sh with the project's folder as the current one.
+# Functions for apps/quickstart.sh, tests/run.sh and .ci/run: the Debian packages, their installation, and the build with a
+# preset of CMake. Source this file from POSIX sh with the project's folder as the current one.
 # shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
 # Minutes that a stage takes on 2 cores in a new folder. README.md and tests/README.md state the same numbers.
@@ -64,8 +64,9 @@ pliant_missing() {
   done
 }
 
-# Installs, as root or through sudo, the missing packages: those of every build, and those of the given words. If that is
-# impossible, prints their names and ends with status 4.
+# Installs, as root or through sudo, the missing packages of the list pliant_packages and of the words in the arguments. If that
+# is impossible, prints the names of the missing packages and ends with status 4. On other systems than Debian, only prints the
+# names of all packages.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" $pliant_packages "$@"
@@ -92,7 +93,7 @@ pliant_install() {
   pliant_end
 }
 
-# Prints the number of compile jobs: one for each processor, but no more than one for each 2 GB of free memory.
+# Prints the number of compile jobs: one for each processor, at most one for each 2 GB of free memory, at least one.
 pliant_jobs() {
   jobs=$(nproc 2>/dev/null || echo 1)
   by_memory=$(awk '/^MemAvailable/ { print int($2 / 2000000) }' /proc/meminfo 2>/dev/null)

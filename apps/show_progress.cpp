@@ -30,7 +30,7 @@ std::string printed(const char* format, double a, double b = 0) {
   return text;
 }
 
-// Keeps the state of a stage. Derived classes decide when it is shown, and how.
+// Keeps the state of a stage. Derived classes decide when and how this state is shown.
 class StageProgress : public pliant::Progress {
  public:
   void begin(const std::string& stage, double total, const std::string& unit) override {

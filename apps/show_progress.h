@@ -7,8 +7,8 @@
 
 namespace pliant_cli {
 
-/// Returns a progress display. Its advance() throws pliant::Interrupted after a stop signal, except during
-/// the simulation, which stops by itself after a step.
+/// Returns a progress display. quiet: shows nothing, notes included. Its advance() throws pliant::Interrupted
+/// after a stop signal, except in the stage "simulate": the simulation itself ends after the current step.
 std::unique_ptr<pliant::Progress> make_progress(bool quiet);
 
 }  // namespace pliant_cli

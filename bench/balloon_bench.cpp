@@ -33,7 +33,7 @@ constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // step / larges
 
 struct System {
   const char* name;
-  double E, thickness, pressure, beta, drag, duration;
+  double E, thickness, pressure, beta, drag, duration;  ///< Pa, m, Pa, s, 1/s, s
   const char* method;
 };
 

@@ -11,10 +11,13 @@
 //   step               mean time of a step in the whole run (step_us_per_body)
 //   at rest            mean time of a step in the last tenth of the run (still_step_us_per_body)
 //   warm               a step at the end that is warm-started from the contact cache (begun_us)
-//   cold               a step at the end without the cache (anew_us); one step of eleven in a run is cold
+//   cold               a step at the end without the cache (anew_us); in a run, the step after ten warm ones
 //   asleep             a step at the end in which all bodies sleep, an option of scenes
 //   motion             stage of a step at the end: the method of integration without contact
 //   near, find, solve  stages of a step at the end: candidate pairs, contacts, impulses
+//   deepest            largest depth of a contact in the run / 0.1 m (deepest_in_sizes)
+//   residual           largest residual of a contact solution, m/s
+//   fallbacks          clusters of contacts without a solution, see step_counters.h
 //
 // The stages are timed one by one in separate loops, so that the processor caches contain their data.
 #include <cmath>
@@ -42,11 +45,11 @@ enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: three parameter
 struct System {
   const char* name;
   Bodies bodies;
-  int layers;      ///< number of layers on top of each other
+  int layers;      ///< number of layers on top of each other; not used for pyramids
   int max_bodies;  ///< largest number of bodies
 };
 
-/// Times in microseconds per body and step.
+/// A row of the table. Times are in microseconds per body and step.
 struct Cost {
   std::string system;
   int bodies, contacts;
@@ -54,8 +57,8 @@ struct Cost {
   double step, resting_step;  ///< means over the whole run, and over its last tenth
   double asleep;              ///< a step in which all bodies sleep
   double motion, near, find, solve;
-  double deepest;  ///< largest depth of a contact in the run / 0.1 m, which is about the size of a body
-  double residual;
+  double deepest;   ///< largest depth of a contact in the run / 0.1 m, which is about the size of a body
+  double residual;  ///< m/s
   long fallbacks;
 };
 

@@ -1,5 +1,6 @@
-// The linearly implicit method on solids. One table has the cost of a step, beside that of a step of RK4 and
-// of one evaluation, and the cost of the factor, for each law, size and factorisation. The other table has
+// The linearly implicit method on solids. One table has the time of a step, beside that of a step of RK4 and
+// of one evaluation of the accelerations, and the time of the factorisation of its matrix, for each law, size
+// and kind of factorisation. The other table has
 // processor time against error for a stiff solid that swings on a joint: RK4 at 0.9 of its largest stable
 // step, and the implicit method at 1 to 1000 times this largest step. Writes CSV to standard output.
 //
@@ -31,8 +32,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// The cost of a factorisation.
 struct Measured {
-  Eigen::Index unknowns = 0, entries = 0;
+  Eigen::Index unknowns = 0, entries = 0;  // rows of the matrix; nonzeros of its factor L
   double analysis = 0, factorisation = 0;  // times of the last calls, s
 };
 

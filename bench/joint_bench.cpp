@@ -7,11 +7,12 @@
 //
 // An evaluation of the accelerations has these stages: parts (timed with the same parts without joints),
 // rows (C_q and bias), factor (M^-1 C_q^T, W_c = C_q M^-1 C_q^T and its factor), solve (lambda and
-// accelerations), rest (points of joints, powers). A stage of RK4 needs only rates, which rigid islands
-// compute faster. Both solvers are timed, and the one that "auto" selects is named. The time of projection
-// is that of a step minus four stages (RK4) or one evaluation (Euler). The stages are timed one by one in
-// separate loops, with warm caches. Every time is the minimum over rounds of all sizes: other load of the
-// machine lasts longer than one measurement and would distort the growth.
+// accelerations), and a remainder with the name "rest" (points of joints, powers). A stage of RK4 needs
+// Dynamics::rates() only, which is faster for rigid islands (rigid parts that ball joints connect). Both
+// joint solvers, blocks and augmented matrix, are timed, and the one that "auto" selects is named. The time
+// of projection is that of a step minus four stages (RK4) or one evaluation (Euler). The stages are timed one
+// by one in separate loops, with warm caches. Every time is the minimum over rounds, and each round measures
+// all sizes: other load of the machine lasts longer than one measurement and would distort the growth.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,7 +48,7 @@ struct Cost {
   double evaluation, stage, rk4_step, euler_step;
   double parts, rows, factor, solve;
   double blocks, augmented;  ///< times of an evaluation with each solver
-  bool auto_is_augmented;    ///< whether solver "auto" selects "augmented"
+  bool auto_is_augmented;    ///< whether the choice "auto" selects "augmented"
 
   void minimise_with(const Cost& other) {
     for (double Cost::*time :
@@ -77,7 +78,7 @@ double step_seconds(Simulation& simulation, const State& start) {
       0.02, 3);
 }
 
-/// Returns the time of an evaluation at a state with the chosen solver, s.
+/// Returns the time of an evaluation of the accelerations at a state with the given solver, s.
 double evaluation_seconds(JointSolver::Choice choice, const System& system, int size, const State& state) {
   MultiBody body;
   body.joint_solver.choice = choice;

@@ -104,7 +104,8 @@ inline void ring(Linkage& linkage, int n) {
     linkage.connect(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
 }
 
-/// Adds a sphere whose centre is joined to the origin, with n links distributed around it.
+/// Adds a sphere whose centre is joined to the origin, and n links, connected to points distributed over the
+/// surface of the sphere.
 inline void star(Linkage& linkage, int n) {
   const double radius = 0.3;
   const Part& hub = linkage.sphere(Vec3<double>::Zero(), radius);

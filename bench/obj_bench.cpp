@@ -1,7 +1,8 @@
 // Time of writing mesh files of a hundred thousand triangles with normals. Prints one CSV row for each
 // format. The target for OBJ is 20 ms.
 //
-//   obj_bench [rounds] [folder for the files]
+//   obj_bench [ROUNDS] [FOLDER]     ROUNDS: number of measurements (20); FOLDER: for the temporary files (the
+//   system's temporary folder)
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Draws the CSV of bench/work_precision as run time, or evaluations, against error, with one panel per problem.
 
-Failed runs are crosses in the lower left corner, in the colour of their method. The unit of gap_m is m and that of balance_J
-is J. The errors of positions, of velocities and of joint forces are relative.
+Failed runs are crosses in the lower left corner, in the colour of their method. Errors decrease to the right. The unit of
+gap_m is m and that of balance_J is J. The errors of positions, of velocities and of joint forces are relative.
 
 usage: work_precision FOLDER; bench/plot.py FOLDER/work_precision.csv work_precision.svg   (needs matplotlib)
 """

@@ -2,7 +2,7 @@
 # Measures run time against error: writes the tables of work_precision and draws run time against each kind of error, and
 # evaluations against the error at the end.
 #
-# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: path of the program; options: its options (--only, --again)
+# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: path of the program; option: of this program (--all, --only, --again)
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,5s/^# \?//p' "$0"; exit 2; }
 folder=$1 program=$2

@@ -3,8 +3,8 @@
 //
 //   A          free ellipsoid with semi-axes 0.3, 0.2, 0.1 m that spins about its unstable axis
 //   B          the ellipsoid of A, suspended at the tip of its long axis, with a sideways initial velocity
-//   C8 ...     chain of 8 (...) ellipsoids of A along x, released at rest, link i rotated by 0.7 i rad (x)
-//   D4 ...     net of 4 x 4 (...) touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
+//   Cn         chain of n ellipsoids of A along x, released at rest; link i is rotated by 0.7 i rad about x
+//   Dn         net of n x n touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
 //   dust       free spinning ellipsoid without stiffness of its semi-axes: every particle flies straight
 //   solid      free tumbling superellipsoid whose semi-axes, taper, twist and bend are elastic
 //   four-bars  row of 40 four-bar linkages ("windows") of rods on hinges, which rotate (IFToMM A02)
@@ -29,7 +29,7 @@ struct Problem {
   /// Length of a body, m. Errors are distances of centres divided by this length. If it is 0, errors are
   /// norms of all coordinates by ErrorScale.
   double length;
-  bool long_running;
+  bool long_running;  ///< whether work_precision measures the problem only with --all or --only
   std::function<void(MultiBody&)> build;
 };
 

@@ -11,8 +11,8 @@
 
 namespace pliant::bench {
 
-/// The motion y = (q, v) from an initial state. The modes of limits and joints are those of the initial
-/// state.
+/// The motion y = (q, v) from an initial state. Joints and limits of parameters keep the modes (closed,
+/// active and so on) of the initial state.
 class SmoothMotion {
  public:
   SmoothMotion(const Dynamics& dynamics, const State& start)

@@ -1,5 +1,6 @@
-// Run time against energy error of scenes, with every method and decreasing steps. With a folder the scenes
-// are the mechanisms A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et al. 2006).
+// Run time against energy error of scenes, with every method and decreasing steps. If the argument is a
+// folder of scenes, these are the mechanisms A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et
+// al. 2006).
 //
 //   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
 //

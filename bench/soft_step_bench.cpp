@@ -1,7 +1,7 @@
 // Time per triangle of four calls for a spinning sphere with a linear membrane: the force kernel of the
 // membrane, an evaluation of the accelerations, a step of RK4 (four evaluations) and a step of semi-implicit
-// Euler (one), at half the largest stable step. Each time is the minimum of four rounds. The last column is
-// the time per evaluation / time of the kernel. Writes CSV to standard output.
+// Euler (one evaluation), at half the largest stable step of the method. Each time is the minimum of four
+// rounds. The last column is the time per evaluation / time of the kernel. Writes CSV to standard output.
 //
 //   soft_step_bench [FOLDER]     also writes soft_step_bench.csv to FOLDER
 #include <algorithm>

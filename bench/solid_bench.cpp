@@ -57,7 +57,7 @@ long operations() {
   for (const TetrahedronPoint& at : Element::rule) {
     Mat3<Counted> G = product(Element::gradient(at, x), inverse);
     const long before = Counted::operations;
-    if (Law::of == NodalEnergy::Of::position) G = inverse;  // F = 1, as near rest
+    if (Law::of == NodalEnergy::Of::position) G = inverse;  // deformation gradient F = 1, as at rest
     Counted::operations = before;
     Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse),
                               f);

@@ -39,10 +39,12 @@ class TableFile {
     if (!file_) throw std::runtime_error("cannot write " + path);
     file_ << head << std::flush;
   }
+  /// Writes a row of cells.
   void row(const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) file_ << (i > 0 ? "," : "") << cells[i];
     file_ << '\n' << std::flush;
   }
+  /// Writes the text of std::printf for these arguments, at most 511 characters, with its line break.
   template <class... Args>
   void row(const char* format, Args... args) {
     char line[512];

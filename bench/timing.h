@@ -40,8 +40,8 @@ double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   return time / static_cast<double>(calls);
 }
 
-/// Returns the multiply-adds per second of one core, with operands in registers. They are fused if the
-/// target supports that.
+/// Returns the multiply-adds per second of one core, with operands in registers. The multiply-adds are fused
+/// if the program is compiled for a processor with such instructions.
 inline double multiply_add_peak() {
 #ifdef __AVX__
   constexpr int lanes = 12 * 4;

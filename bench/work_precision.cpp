@@ -19,7 +19,7 @@
 // halves the step. The others start with the tolerance 0.1; each further setting divides it by ten.
 // linearly_implicit is measured with fixed steps, and with tolerances as linearly_implicit_controlled. A
 // method is measured with at least six settings that succeed. After them, the measurement stops if a run
-// exceeds 4 s, or if the error is below the resolution of the reference.
+// exceeds the time limit, or if the error is below the resolution of the reference.
 //
 // error: error at the end, of the positions of the bodies divided by their length, or of all coordinates
 // (error_scale.h). error_along: the maximum of this error at eight times, in a run that stops at each of
@@ -67,17 +67,19 @@ namespace {
 
 constexpr int kSamples = 8;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Names of the linearly implicit method with fixed steps and with error control.
+/// Names, in the tables, of the linearly implicit method with fixed steps and with error control.
 const std::string kFixed = "linearly_implicit", kControlled = kFixed + "_controlled";
 
-/// How a method steps: to a tolerance, or with a number of equal steps.
+/// A method, and how its steps are chosen: by a tolerance, or, if the tolerance is 0, as equal steps.
 struct Setting {
   std::string method;
   double tolerance;
   long steps;
 };
 
-/// A run: its states at the samples and at the end, the joint forces at the end, and its cost.
+/// The results of a run: the states at the kSamples times and at the end, the joint forces (N, N m) at the
+/// end, and the cost. The error of the energy balance (J), the kinetic energy (J) and the gap (m) are maxima
+/// over these times.
 struct Outcome {
   std::vector<State> states;
   State end;  // for a reference, the last of the states
@@ -86,6 +88,7 @@ struct Outcome {
   long evaluations = 0, steps = 0;
 };
 
+/// Returns the widest gap of the closed joints, m.
 double worst_gap(const Model& model, const State& state) {
   double worst = 0;
   for (std::size_t j = 0; j < model.joints().size(); ++j)
@@ -161,6 +164,8 @@ class ErrorMeter {
   }
   const Model& model() const { return simulation_->model(); }
 
+  /// Returns the largest distance of a part of a from that of b / length of a body, or the difference of all
+  /// coordinates in the norm of ErrorScale (error_scale.h) if the problem has no such length.
   double position_error(const State& a, const State& b) const {
     if (!a.q.allFinite() || !b.q.allFinite()) return std::numeric_limits<double>::infinity();
     if (length_ == 0) return scale_->norm(a.q - b.q);
@@ -275,9 +280,10 @@ struct Cost {
   double cpu_ms, error;
 };
 
-/// Returns the CPU time (ms) at an error of `level`. It is interpolated, in logarithms, between two runs:
-/// the coarsest one from which on all errors are at most `level`, and the run before that one. Returns NaN
-/// if there is no such run.
+/// Returns the CPU time (ms) at an error of `level`. runs: from coarse to fine. The time is interpolated, in
+/// logarithms, between two runs: the coarsest one from which on all errors are at most `level`, and the run
+/// before that one. If the errors of all runs are at most `level`, returns the time of the first run. Returns
+/// NaN if the last run has a larger error, or if there are no runs.
 double cost_at(const std::vector<Cost>& runs, double level) {
   for (std::size_t i = runs.size(); i-- > 0;) {
     if (runs[i].error <= level) continue;
@@ -318,7 +324,7 @@ class Rounds {
       if (!is_measured_(row.front())) file->row(row);
     return file;
   }
-  /// Reads the times of earlier runs, with the first columns of their rows as keys.
+  /// Reads the times of earlier runs. The cells of a row before the time identify the run.
   void read_runs(const char* name, const std::string& head) {
     if (!again_) return;
     for (const std::vector<std::string>& row : bench::read_rows(folder_ + name, head))

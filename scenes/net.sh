@@ -7,8 +7,8 @@ if [[ $# != 2 || ! $1 =~ ^[1-9][0-9]{0,2}$ || ! $2 =~ ^[1-9][0-9]{0,2}$ || $1 -l
   exit 2
 fi
 LC_ALL=C awk -v n="$1" -v m="$2" '
-# Computes the knots of an arc of equal chords with its middle at 0: along[k], up[k]. On either side of the middle its
-# direction changes by `turn`.
+# Computes the positions of the knots of an arc of equal chords, m: along[k], 0 in the middle of the arc, and up[k], 0 at its
+# ends. From an end to the middle, the direction of the arc changes by `turn` (rad).
 function arc(knots, along, up,    k, a) {
   along[0] = up[0] = 0
   for (k = 1; k < knots; ++k) {

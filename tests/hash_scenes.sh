@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prints a hash of the states of every shipped scene after some seconds: bash tests/hash_scenes.sh PROGRAM [END] [FOLDER].
-# PROGRAM is a built pliant, END the time in s (1 unless given), FOLDER the scenes (scenes/ unless given). Each line has
+# Prints a hash of the states of every shipped scene at the time END: bash tests/hash_scenes.sh PROGRAM [END] [FOLDER].
+# PROGRAM: path of a built pliant; END: simulated time, s (default: 1); FOLDER: folder of the scenes (default: scenes/). Each line has
 # the scene, the exit code and the SHA-256 of q.npy and v.npy. A change that keeps behaviour keeps all lines, on one
 # machine and with one compiler:
 #   diff <(bash tests/hash_scenes.sh OLD/pliant) <(bash tests/hash_scenes.sh build/release/apps/pliant)

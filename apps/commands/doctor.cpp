@@ -39,7 +39,8 @@ void print_graphics() {
                  "of them\n";
 }
 
-// Measures the speed of a write that reaches the disk, MB/s.
+// Writes a temporary file of 64 MiB to a folder and waits until its bytes are on the disk. Returns the speed,
+// MB/s.
 double write_speed(const fs::path& folder) {
   using Clock = std::chrono::steady_clock;
   constexpr std::size_t block = std::size_t{1} << 20, blocks = 64;

@@ -1,4 +1,5 @@
-// pliant info: prints the parts, joints, degrees of freedom and stable step of a scene without running it.
+// pliant info: prints the parts, joints, degrees of freedom and largest stable step of a scene without
+// simulating it.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -20,7 +21,7 @@ namespace {
 
 using pliant::Vec3;
 
-// Returns zero for a number that is only rounding error in comparison with `scale`, otherwise the number.
+// Returns 0 if |x| is at most 1e-12 scale, the size of rounding errors; otherwise returns x.
 double rounded(double x, double scale) {
   return std::abs(x) <= 1e-12 * scale ? 0 : x;
 }
@@ -224,8 +225,9 @@ int info(const SceneOptions& options) {
     std::cout << "largest stable step: unlimited, because nothing is stiff\n";
   if (!stable.uncounted.empty()) std::cout << "  " << stable.uncounted << "\n";
   if (scene->tolerance == 0 && schedule.step() > stable.step)
-    std::cout << "warning: the step of " << schedule.step()
-              << " s is larger; the run will probably fail; choose a smaller --step\n";
+    std::cout
+        << "warning: the step of " << schedule.step()
+        << " s is larger than the largest stable step; the run will probably fail; choose a smaller --step\n";
   return kDone;
 }
 

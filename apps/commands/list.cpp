@@ -25,7 +25,8 @@ std::string text_of(double x) {
 }
 
 std::string range_text(const pliant::Range& range, bool relative) {
-  return "[" + text_of(range.min) + ", " + text_of(range.max) + "]" + (relative ? " times rest" : "");
+  return "[" + text_of(range.min) + ", " + text_of(range.max) + "]" +
+         (relative ? " times the rest value" : "");
 }
 
 void print_parameters(const pliant::ParameterSpec* specs, std::size_t count) {
@@ -94,7 +95,7 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {
     {"shapes", "solid primitives, with their parameters, ranges and formulas", list_shapes},
-    {"deformations", "links of a part's chain of global deformations", list_deformations},
+    {"deformations", "global deformations, with their parameters, ranges and formulas", list_deformations},
     {"laws", "energies of local deformation, with their parameters", list_laws},
     {"joints", "constraints between points of parts and of the world", list_joints},
     {"integrators", "methods of time integration", list_integrators},

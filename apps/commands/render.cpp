@@ -1,4 +1,5 @@
-// pliant render: draws the pictures of a recorded run again, if requested with another camera or size.
+// pliant render: draws the pictures of a recorded run again, with another camera, size or colouring if
+// requested.
 #include <memory>
 #include <optional>
 

@@ -45,7 +45,8 @@ fs::path folder_of(const RunCommand& command) {
 }
 
 // Sets the options of the command line in the scene. A resumed run keeps its old settings, except those that
-// the command line sets.
+// the command line sets. --step removes the tolerance. --tolerance without --integrator selects "auto" if the
+// method of the scene has no error control. "auto" without a tolerance gets the standard one.
 void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& previous,
                    pliant::Scene& scene) {
   if (previous) {
@@ -144,7 +145,8 @@ int run_scene(const RunCommand& command) {
   const std::unique_ptr<pliant::Scene> scene = read(asked);
   apply_options(command, previous, *scene);
 
-  // Faults of later stages are reported before the simulation starts.
+  // These calls throw before the simulation starts if a later stage would fail: the estimate of the error,
+  // the number of frames, the graphics library.
   if (command.estimate) pliant::require_better_run(*scene);
   if (command.obj || command.png) pliant::FrameRange().size(pliant::schedule_of(*scene).frames());
   pliant::RunOptions options;

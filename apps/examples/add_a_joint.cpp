@@ -5,11 +5,12 @@
 
 using namespace pliant;
 
-// C(x, t) = (x - r cos(k z), y - r sin(k z)): a point of a part on the wire.
+// C = (x - r cos(k z), y - r sin(k z)) for a point (x, y, z) of a part, which stays on the wire. r: radius of
+// the helix, m; k: its angle per height, rad/m.
 struct Wire {
   static constexpr const char* name = "wire";
   static constexpr const char* formula = "(x - r cos(k z), y - r sin(k z)) = 0";
-  static constexpr int rows = 2, first = 1, second = 0;  // points on its first and on its second side
+  static constexpr int rows = 2, first = 1, second = 0;  // points on the first and on the second side
   static constexpr bool one_sided = false;
   double r, k;
 

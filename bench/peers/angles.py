@@ -11,7 +11,7 @@ from problems import conjugate, product, rotation
 def order(problem):
     """Returns the axes in order; each is an axis of the frame rotated about the previous axes.
 
-    A chain swings about y; body B revolves about z.
+    The links of a chain swing about y; the body of problem B revolves about z.
     """
     return "ZYX" if problem.name == "B" else "YZX"
 
@@ -21,7 +21,7 @@ def matrix(problem, angles):
 
 
 def start(problem, parent, child):
-    """Returns the angles of body child relative to body parent, and their rates."""
+    """Returns the three angles at the start of body child relative to body parent (rad), and their rates (rad/s)."""
     body = problem.bodies[child]
     quat, omega, world = body.quat, body.omega, np.eye(3)
     if parent >= 0:

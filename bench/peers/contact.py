@@ -37,7 +37,7 @@ MAX_SECONDS = 60  # a configuration is not repeated after this CPU time, s
 
 
 def ellipsoids(count, layers):
-    """Yields (semi-axes, mass, centre, quaternion w x y z) of ellipsoids, side by side or in layers."""
+    """Yields (semi-axes in m, mass in kg, centre in m, quaternion w x y z) of ellipsoids, side by side or in layers."""
     across = math.ceil(math.sqrt(count / layers))
     for i in range(count):
         a, b, c = ((i + 1) * ratio % 1 for ratio in (0.6180339887498949, 0.7548776662466927, 0.5698402909980532))
@@ -155,9 +155,10 @@ def rigid_run(make, count, layers):
 
 
 def balloons(balloon, count, triangles, step, integrator):
-    """Returns a model with one falling balloon, or nine on tendons from hooks to their topmost vertices, and the faces.
+    """Returns a MuJoCo model and the triangles of the balloons, as rows of three vertex numbers.
 
-    A balloon is a flex with membrane stiffness only.
+    The model has one falling balloon, or nine on tendons from hooks to the topmost vertices of the balloons. A balloon
+    is a flex with membrane stiffness only.
     """
     import mujoco
     points, faces = sphere(triangles)
@@ -182,7 +183,7 @@ def balloons(balloon, count, triangles, step, integrator):
     spec = mujoco.MjSpec.from_string(f"<mujoco><worldbody>{''.join(parts)}</worldbody></mujoco>")
     option = spec.option
     option.timestep, option.gravity = step, GRAVITY
-    if integrator != "euler":  # with CG, the faster solver for this integrator
+    if integrator != "euler":  # CG is the faster solver for the discrete integrator
         option.integrator, option.solver = mujoco.mjtIntegrator.mjINT_DISCRETE, mujoco.mjtSolver.mjSOL_CG
     if integrator == "ipc":
         option.enableflags |= mujoco.mjtEnableBit.mjENBL_IPC
@@ -206,7 +207,7 @@ def balloons(balloon, count, triangles, step, integrator):
 def deepest_balloon(data, faces, count):
     """Returns the largest depth of the contacts, and of vertices behind the floor or inside another balloon.
 
-    Vertices that have passed through a surface have no contacts.
+    MuJoCo has no contacts for vertices that have passed through a surface.
     """
     each, corners = data.flexvert_xpos.reshape(count, -1, 3), data.flexvert_xpos[faces].reshape(count, -1, 3, 3)
     if count == 1:
@@ -221,13 +222,13 @@ def add_pressure(model, data, faces, pressure):
     forces = np.zeros((model.nflexvert, 3))
     for corner in faces.T:
         np.add.at(forces, corner, pressure / 6 * np.cross(b - a, c - a))
-    data.qfrc_applied[:] = forces.ravel()  # joints are the vertices' x, y, z
+    data.qfrc_applied[:] = forces.ravel()  # the coordinates of the model are x, y, z of the vertices
 
 
 def balloon_run(balloon, count, duration, triangles, step, integrator):
     """Returns (CPU s, largest depth, largest stretch of a string in m), or None if the run is unstable.
 
-    The pressure is not timed.
+    The time in which the script computes the pressure is not included.
     """
     import mujoco
     mujoco.set_mju_user_warning(lambda _: None)
@@ -255,7 +256,7 @@ def balloon_run(balloon, count, duration, triangles, step, integrator):
 
 
 def fastest(run, *args, rounds):
-    """Returns the result of the run with the minimum CPU time. Each run is a separate process."""
+    """Returns the result of the run with the minimum CPU time, or None if the run is unstable. Each run is a process."""
     best = in_child(run, *args)
     spent = best[0] if best else 0
     for _ in range(rounds - 1):

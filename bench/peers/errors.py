@@ -5,7 +5,7 @@ import numpy as np
 
 
 def read_references(path):
-    """Returns {problem: (centres, quaternions)} from a precision_reference.csv."""
+    """Returns {problem: (centres in m, quaternions w x y z)} at the end, one row per body, from a precision_reference.csv."""
     poses = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
@@ -20,9 +20,9 @@ def read_resolutions(path):
 
 
 def error(problem, pose, reference):
-    """Returns the largest distance of a body centre from its reference / length of a body.
+    """Returns the largest distance of a body centre from its reference / length of a body; NaN if the pose is not finite.
 
-    For A, returns the angle between the two rotations, rad.
+    pose, reference: (centres, quaternions). For A, returns the angle between the two rotations, rad.
     """
     (c, q), (c0, q0) = pose, reference
     if not (np.isfinite(c).all() and np.isfinite(q).all()):

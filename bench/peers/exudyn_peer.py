@@ -47,7 +47,7 @@ class Bodies:
 
 
 class Tree:
-    """Minimal coordinates: three revolute joints per ball joint; the first two links have no mass."""
+    """Minimal coordinates: three revolute joints per ball joint; the two links between these joints have no mass."""
 
     def __init__(self, problem):
         self.problem = problem

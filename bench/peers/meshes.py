@@ -37,9 +37,9 @@ def dot(a, b):
 
 
 def deepest_inside(points, corners):
-    """Returns the largest distance to the surface over the points inside it.
+    """Returns the largest distance between the surface of a closed mesh and a point inside the mesh; 0 without such points.
 
-    corners: the corners of each triangle, counter-clockwise.
+    points: (n, 3); corners: (triangles, 3, 3), the corners of each triangle, counter-clockwise seen from outside.
     """
     points = points[((points > corners.min(axis=(0, 1))) & (points < corners.max(axis=(0, 1)))).all(axis=1)]
     sides = [corners[:, k] - points[:, None] for k in range(3)]

@@ -34,6 +34,8 @@ def cross_matrices(r):
 
 
 class Multipliers:
+    """The accelerations of a problem. y = (centres, quaternions, velocities in world axes, angular velocities in body axes)."""
+
     def __init__(self, problem):
         bodies = problem.bodies
         self.n = len(bodies)
@@ -54,7 +56,7 @@ class Multipliers:
 
     @staticmethod
     def _numbered(joints):
-        """Returns the joints in an order of small bandwidth."""
+        """Returns the joints in an order in which the matrix of the multipliers has a small bandwidth."""
         share = [(i, j) for i, a in enumerate(joints) for j, b in enumerate(joints)
                  if {a.a, a.b} & {b.a, b.b} - {WORLD}]
         rows, columns = np.array(share).T

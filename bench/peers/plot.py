@@ -28,7 +28,7 @@ def read(path):
 
 
 def curves(peers, pliant):
-    """Returns {problem: {(engine, formulation, method): [(error, time) coarse to fine]}}; NaN for a failed run."""
+    """Returns {problem: {(engine, formulation, method): [(error, CPU ms per s), from coarse to fine]}}; NaN for failed runs."""
     result = {}
     for row in peers:
         key = row["engine"], row["formulation"], row["method"]
@@ -53,7 +53,9 @@ def time_at(points, level):
 
 
 def table(problem, by_method):
-    """Returns rows with problem, engine, time and method at each level, and the ratio of the best peer to pliant."""
+    """Returns a row for each engine (problem, engine, time and method at each level), and a row of ratios of the best time of a
+    peer to that of pliant.
+    """
     rows, best = [], {}
     for engine in dict.fromkeys(key[0] for key in by_method):
         cells = []

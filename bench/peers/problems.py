@@ -16,7 +16,7 @@ WORLD = -1
 @dataclass
 class Body:
     mass: float
-    inertia: np.ndarray  # diagonal
+    inertia: np.ndarray  # principal moments (3)
     pos: np.ndarray
     quat: np.ndarray
     vel: np.ndarray = field(default_factory=lambda: np.zeros(3))  # of the centre, world axes

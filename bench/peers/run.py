@@ -28,7 +28,8 @@ COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per
 # The settings of a method, from coarse to fine, are its ladder. A ladder ends after
 # - an error below SMALLEST,
 # - STALLED successive runs below ROUNDING without an improvement of the smallest error of the ladder,
-# - FAILURES failed runs,
+# - FAILURES failed runs, or a failed run more than 4 times the time limit after the start of the ladder,
+# - a run that crashed or was killed,
 # - a run of more than half the time limit, or
 # - a run of more than a 16th of the limit that is DOMINATED times slower than a run whose error is not larger.
 SMALLEST, ROUNDING, STALLED = 1e-10, 1e-7, 3
@@ -44,8 +45,8 @@ def arguments():
                         help=f"only the problems {' '.join(QUICK)}, with a limit of 1 s")
     parser.add_argument("--problems", type=lambda s: s.split(","), help="default: all")
     parser.add_argument("--engines", type=lambda s: s.split(","), default=ENGINES)
-    parser.add_argument("--limit", type=float, help="CPU s per configuration (default: 10); it is killed after 4 times "
-                        "this limit")
+    parser.add_argument("--limit", type=float, help="time limit of a run, s (default: 10, or 1 with --quick); a run is "
+                        "killed after 4 times this limit")
     parser.add_argument("--again", action="store_true", help="add a round: rows in --out of other problems and "
                         "engines are preserved; of equal runs the smaller time is written")
     parser.add_argument("--prefix", default=sys.prefix, help="Python environment whose wheels contain native libraries")
@@ -74,7 +75,7 @@ def read_rows(path):
 
 
 def in_child(function, *args):
-    """Calls function(*args) in a new process: engines are loaded only in separate processes."""
+    """Calls function(*args) in a new process and returns its result: engines are loaded only in separate processes."""
     with multiprocessing.Pool(1) as pool:
         return pool.apply(function, args)
 
@@ -101,7 +102,7 @@ def serve(connection, engine, name, folder, index):
 
 
 def runs(engine, name, folder, index, settings, limit):
-    """Yields (setting, (seconds, centres, quaternions) or the reason of a failure), from coarse to fine."""
+    """Yields (setting, result), from coarse to fine. result: (CPU s, centres, quaternions), or the reason of a failure."""
     parent_end, child_end = multiprocessing.Pipe()
     process = multiprocessing.Process(target=serve, args=(child_end, engine, name, folder, index))
     process.start()
@@ -129,8 +130,8 @@ def runs(engine, name, folder, index, settings, limit):
 def measure(problem, engine, folder, reference, smallest, limit, best, min_times, write):
     """Measures all ladders of an engine on a problem.
 
-    smallest: smaller errors are replaced by this error; best: (CPU s, error) of the runs so far; min_times: CPU ms of
-    the runs of earlier rounds.
+    smallest: smaller errors are replaced by this error; best: (CPU s, error) of the runs of all engines so far, to which
+    the new runs are added; min_times: CPU ms of the runs of earlier rounds; write(row, remark): writes a row.
     """
     for index, (formulation, method, settings) in enumerate(in_child(titles, engine, problem.name, folder)):
         failures, ladder_errors, start = 0, [], time.monotonic()

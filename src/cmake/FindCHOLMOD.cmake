@@ -14,7 +14,8 @@ else()
   mark_as_advanced(CHOLMOD_INCLUDE_DIR CHOLMOD_LIBRARY)
 endif()
 
-# Sets ${result} to the version that the headers in ARGN define: ${prefix}_MAIN_VERSION, ${prefix}_SUB_VERSION, ...
+# Sets ${result} to the version that a header defines as ${prefix}_MAIN_VERSION, ${prefix}_SUB_VERSION and
+# ${prefix}_SUBSUB_VERSION. The header is the first of those in ARGN that is found.
 function(_cholmod_read_version prefix result)
   find_file(_cholmod_header NAMES ${ARGN} HINTS ${CHOLMOD_INCLUDE_DIR} PATH_SUFFIXES suitesparse NO_CACHE)
   set(version "")
@@ -41,7 +42,7 @@ if(CHOLMOD_FOUND AND NOT TARGET SuiteSparse::CHOLMOD)
   add_library(SuiteSparse::CHOLMOD UNKNOWN IMPORTED)
   set_target_properties(SuiteSparse::CHOLMOD PROPERTIES IMPORTED_LOCATION ${CHOLMOD_LIBRARY}
                                                         INTERFACE_INCLUDE_DIRECTORIES ${CHOLMOD_INCLUDE_DIR})
-  # Libraries that a static CHOLMOD needs.
+  # A static CHOLMOD needs these libraries.
   foreach(library amd camd colamd ccolamd suitesparseconfig)
     string(TOUPPER ${library} upper)
     find_library(CHOLMOD_${upper}_LIBRARY ${library})

@@ -27,8 +27,8 @@ if(PLIANT_NATIVE)
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()
 if(PLIANT_SANITIZE)
-  # Null pointers and misaligned packets crash even without checks. Checks of each access would double the time to compile
-  # and to run.
+  # Null pointers and misaligned packets (SIMD vectors) crash even without checks. The checks that are switched off are done at
+  # each access, and would double the time to compile and to run.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
                       -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
@@ -49,7 +49,7 @@ function(pliant_library name)
   target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
-  if(PLIANT_UNITY)  # GCC warns of types with members of unnamed namespaces in included sources
+  if(PLIANT_UNITY)  # a batch includes sources; GCC warns of their types that have members from unnamed namespaces
     target_compile_options(pliant_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   pliant_install_library(${name} ${arg_PUBLIC} ${arg_PRIVATE})

@@ -5,7 +5,7 @@ include(GNUInstallDirs)
 set(PLIANT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
 
 # Makes the library pliant_${name} the component ${name}. The arguments after the name are the libraries that it links.
-# Those in pliant:: become components that it needs; the others become packages that a client has to find.
+# Libraries in pliant:: become components that the new component needs. Others become packages that a client has to find.
 function(pliant_install_library name)
   if(NOT PLIANT_INSTALL)
     return()
@@ -40,7 +40,7 @@ function(pliant_install_library name)
   install(FILES ${PROJECT_BINARY_DIR}/package/pliant-${name}.cmake DESTINATION ${PLIANT_PACKAGE_DIR})
 endfunction()
 
-# Writes pliant.pc with the compile definitions and options of pliant_options.
+# Writes pliant.pc, with the compile definitions and options of pliant_options, to `file`.
 function(_pliant_write_pkg_config file)
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE libdir)
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}

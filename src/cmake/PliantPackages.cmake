@@ -15,7 +15,8 @@ function(pliant_package name)
   set_property(GLOBAL PROPERTY PLIANT_CLIENT_${name} "${arg_CLIENT}")
 endfunction()
 
-# Stops with an error if a package is missing: pliant_require(PNG_FOUND libpng-dev PLIANT_APPS).
+# Stops with an error if a package is missing: pliant_require(PNG_FOUND libpng-dev PLIANT_APPS). The last argument is the
+# option without which the package is not needed, or "".
 function(pliant_require found debian_package option)
   if(NOT ${found})
     string(REPLACE "_FOUND" "" name ${found})
@@ -32,7 +33,7 @@ if(NOT Eigen3_FOUND)
   find_package(Eigen3 5 QUIET CONFIG)
 endif()
 pliant_require(Eigen3_FOUND libeigen3-dev "")
-# A client must compile with the Eigen of the library: the same major version, and not an older one.
+# A client must compile with an Eigen of the same major version as that of the library, and not with an older one.
 pliant_package(Eigen VERSION ${Eigen3_VERSION} TARGETS Eigen3::Eigen CLIENT "Eigen3 ${Eigen3_VERSION} CONFIG")
 
 find_package(Threads REQUIRED)

@@ -51,7 +51,9 @@ struct TestFolder {
     result.err = bytes_of(folder / ".err");
     return result;
   }
+  // Returns run.json of the run in a folder.
   Json record(const std::string& run) const { return Json::parse(bytes_of(folder / (run + "/run.json"))); }
+  // Returns the bytes of the recording and of the trajectory of a run.
   std::string motion(const std::string& run) const {
     std::string bytes;
     for (const char* file : {"t.npy", "q.npy", "v.npy", "modes.npy", "trajectory.csv"})
@@ -64,7 +66,8 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// Starts a run. Returns the number of its process when the run has recorded its first states.
+// Starts a run of 100 000 s. Waits until the run has recorded its first states, at most 12 s. Returns the
+// number of the process.
 pid_t start_long_run(const TestFolder& place, const std::string& run) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -113,7 +116,9 @@ TEST_CASE("help and version are printed, and a run writes its files") {
   CHECK_FALSE(fs::exists(place.folder / "out/top/frames"));
 }
 
-TEST_CASE("the error of a run is estimated unless no run is more accurate; the chosen method is reported") {
+TEST_CASE(
+    "run --estimate-error prints errors, or is refused if no run can be more accurate; auto names its "
+    "method") {
   const TestFolder place;
   const Result run = place.pliant(
       "run top.json --end 0.05 --integrator auto --tolerance 1e-6 --estimate-error --quiet -o out/e");
@@ -148,6 +153,7 @@ TEST_CASE("commands that print information exit with 0 and write no files") {
   const Result schema = place.pliant("schema");
   CHECK(Json::parse(schema.out).contains("properties"));
   CHECK(schema.out == bytes_of(fs::path(PLIANT_SCENES) / "pliant-scene.schema.json"));
+  // The folder contains top.json and the captured output (.out, .err) only.
   CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
 }
 
@@ -170,7 +176,7 @@ TEST_CASE("info reports joints: rows, rank, islands, and the size of the factor"
   const std::string augmented = info("'" + scenes + "/four_bar.json' --set /time/solver=augmented");
   CHECK(has(augmented, "constraints: 20 rows of rank 17, 1 island, 1 solved with the augmented matrix, "));
   CHECK(has(info("'" + scenes + "/n_four_bar.json'"), "constraints: 35 rows of rank 29, 1 island, "));
-  // A pendulum, and beside it a double pendulum.
+  // A pendulum and a double pendulum: two islands.
   set_bytes(place.folder / "two.json", R"({
     "parts": [{"name": "a", "shape": "sphere", "position": [0, 0, -1]},
               {"name": "b", "shape": "sphere", "position": [5, 0, -1]},
@@ -313,7 +319,7 @@ TEST_CASE("I49, I50: existing files are not overwritten") {
   CHECK(has(bytes_of(place.folder / "p/frame_000001.ply"), "property double strain"));
 }
 
-TEST_CASE("options for colouring by values must be complete") {
+TEST_CASE("options for colouring by values must be complete and valid") {
   const TestFolder place;
   CHECK(place.pliant("run top.json --color-by stain").code == 2);
   CHECK(place.pliant("run top.json --color-range 0 1").code == 2);
@@ -427,7 +433,7 @@ TEST_CASE("too many frames for files are refused before the simulation, and need
   CHECK(place.pliant("run top.json --fps 1e9 --end 0.1 --quiet", memory_limit).code == 0);
 }
 
-TEST_CASE("I57: a closed standard output is no crash") {
+TEST_CASE("I57: a closed standard output causes no crash") {
   const TestFolder place;
   const Result piped = place.pliant("run top.json -o r 2>&1 | true; echo done");
   CHECK(piped.code == 0);

@@ -1,7 +1,7 @@
 # Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
 #   find          find_package(pliant COMPONENTS core) in the installation PREFIX, with the other packages disabled
 #   components    find_package with all of COMPONENTS
-#   absent        find_package with a component that does not exist: must fail and name it
+#   absent        find_package with a component that does not exist: must fail with a message that names the component
 #   pkg-config    pliant.pc of PREFIX
 #   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
 #   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, built with the installation PREFIX

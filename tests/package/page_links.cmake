@@ -1,5 +1,5 @@
-# Checks that links between the pages of the project lead to files. Also checks that files exist whose names, with a folder,
-# are in backticks on a page.
+# Checks that links between the pages of the project lead to files. Also checks that a file exists for each file name with a
+# folder that a page shows in backticks.
 # Run as cmake -D SOURCE=... -P page_links.cmake.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB pages ${SOURCE}/*.md)

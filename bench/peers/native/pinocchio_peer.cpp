@@ -2,7 +2,8 @@
 //
 //   pinocchio_peer PROBLEM TABLEAU fixed STEPS | pinocchio_peer PROBLEM TABLEAU adaptive TOLERANCE
 //
-// Trees use the articulated-body algorithm; loops are closed by constraintDynamics.
+// PROBLEM: file of native_peer.py; TABLEAU: file of pinocchio_peer.py. Accelerations of trees are computed by
+// the articulated-body algorithm, those of systems with loops by constraintDynamics.
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -32,6 +33,7 @@ Quaterniond quat(const peers::Quat& q) {
   return {q[0], q[1], q[2], q[3]};
 }
 
+/// The coefficients of a Runge-Kutta method.
 struct Tableau {
   MatrixXd A;  ///< stages x stages, strictly lower
   VectorXd b;
@@ -93,6 +95,7 @@ class System {
 
   const VectorXd& start() const { return start_; }
 
+  /// Computes dy, the time derivative of y = (q, v), Pinocchio's coordinates and velocities of the tree.
   void rate(const VectorXd& y, VectorXd& dy) {
     q_ = y.head(model_.nq);
     pin::normalize(model_, q_);
@@ -187,7 +190,8 @@ class RungeKutta {
     }
   }
 
-  /// Step control of Hairer's DOP853.
+  /// Integrates from 0 to `end` (s) with the step control of Hairer's DOP853. The last stage of a step is the
+  /// first stage of the next one.
   void adaptive(VectorXd& y, double end, double tolerance) {
     const auto last = tableau_.b.size();
     double t = 0, h = 1e-3;

@@ -1,5 +1,5 @@
 // Reads a problem from the file that native_peer.py writes for a compiled peer, times the peer and prints its
-// result.
+// result. SI units.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,12 @@ using Quat = std::array<double, 4>;  ///< w x y z, body to world
 
 struct Body {
   double mass;
-  Vec3 inertia, pos;
+  Vec3 inertia, pos;  ///< principal moments, body axes; centre of mass
   Quat quat;
   Vec3 vel, omega;  ///< world axes
 };
-/// Ball joint: point ra of body a coincides with point rb of body b; the world is body -1.
+/// Ball joint: point ra of body a coincides with point rb of body b, both in body frames; the world is body
+/// -1.
 struct Joint {
   int a;
   Vec3 ra;
