@@ -2,6 +2,7 @@
 // that compilers unroll.
 #pragma once
 
+#include <pliant/math/max_or_nan.h>
 #include <pliant/math/scalar/pack.h>
 #include <pliant/math/types.h>
 
@@ -81,16 +82,14 @@ T determinant(const Mat3<T>& A, const Mat3<T>& cofactors_of_A) {
   return A(0, 0) * cofactors_of_A(0, 0) + A(0, 1) * cofactors_of_A(0, 1) + A(0, 2) * cofactors_of_A(0, 2);
 }
 
-/// Returns the smallest lane. A double has one lane. The result is NaN only if the last lane is NaN: a NaN in
-/// an earlier lane is lost.
-inline double least_of(double x) {
+/// Returns the smallest lane, or NaN if a lane is NaN. A double has one lane.
+inline double min_lane(double x) {
   return x;
 }
-inline double least_of(const Pack& x) {
-  double least = x[0];
-  for (int i = 1; i < Pack::kLanes; ++i)
-    if (!(x[i] >= least)) least = x[i];
-  return least;
+inline double min_lane(const Pack& x) {
+  double min = x[0];
+  for (int i = 1; i < Pack::kLanes; ++i) min = -max_or_nan(-x[i], -min);
+  return min;
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <pliant/math/header_only.h>
+#include <pliant/math/max_or_nan.h>
 
 namespace pliant {
 
@@ -72,7 +73,7 @@ PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<do
                                       const VecX<double>& v) const {
   double largest = 0;
   auto visit = [&](double error, const PartModel&, const char*) {
-    if (is_larger_error(error, largest)) largest = error;
+    largest = max_or_nan(error, largest);
   };
   visit_coordinates(q_error, visit);
   visit_velocities(v_error, v, visit);
@@ -82,7 +83,7 @@ PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<do
 PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error) const {
   double largest = 0;
   visit_coordinates(q_error, [&](double error, const PartModel&, const char*) {
-    if (is_larger_error(error, largest)) largest = error;
+    largest = max_or_nan(error, largest);
   });
   return largest / tolerance_;
 }
@@ -92,7 +93,7 @@ PLIANT_INLINE std::string ErrorScale::worst(const VecX<double>& q_error, const V
   double largest = -1;
   std::string block;
   auto visit = [&](double error, const PartModel& m, const char* name) {
-    if (!is_larger_error(error, largest)) return;
+    if (error <= largest || std::isnan(largest)) return;
     largest = error;
     block = std::string(name) + " of part '" + m.part->name() + "'";
   };

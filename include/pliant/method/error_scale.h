@@ -6,17 +6,11 @@
 // second.
 #pragma once
 
-#include <cmath>
 #include <string>
 
 #include <pliant/body/model.h>
 
 namespace pliant {
-
-/// Returns whether an error is larger than the largest earlier error. NaN is larger than all numbers.
-inline bool is_larger_error(double error, double largest) {
-  return !(error <= largest) && !std::isnan(largest);
-}
 
 /// The smallest and the largest tolerance of a simulation.
 inline constexpr double kLeastTolerance = 1e-12, kGreatestTolerance = 0.1;

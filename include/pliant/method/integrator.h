@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/body/step_context.h>
+#include <pliant/math/max_or_nan.h>
 #include <pliant/method/error_scale.h>
 #include <pliant/method/step_path.h>
 
@@ -55,7 +56,7 @@ class Integrator {
   const ErrorScale* scale() const { return scale_; }
   /// Includes an error, in tolerances, in the next result of take_error().
   void note_error(double error) {
-    if (is_larger_error(error, error_)) error_ = error;
+    error_ = max_or_nan(error, error_);
   }
   /// Projects limits, strings and joints at the end of a step, for all methods that do not apply impulses
   /// before the coordinates move. The error of the step includes the displacement by the projection or, if a

@@ -41,7 +41,7 @@ inline Dual<1> sum_of_lanes(const DualPack& x) {
 template <class Law>
 void throw_if_inverted(const Law&, const Mat3<Pack>& F) {
   if constexpr (!std::is_same_v<Law, SheetStrain>)
-    if (!(least_of(determinant(F, cofactors(F))) > 0))
+    if (!(min_lane(determinant(F, cofactors(F))) > 0))
       throw InvertedElement(
           "its global deformation turns some of its elastic material inside out; use a smaller step, a "
           "stiffer "

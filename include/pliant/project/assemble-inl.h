@@ -13,6 +13,7 @@
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/max_or_nan.h>
 #include <pliant/project/project.h>
 #include <pliant/project/projection.h>
 
@@ -49,7 +50,6 @@ inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCost
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-using projection::max_or_nan;
 
 /// The assembly of one island.
 class Assembly {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pliant/math/header_only.h>
+#include <pliant/math/max_or_nan.h>
 #include <pliant/project/projection.h>
 
 namespace pliant {

@@ -13,6 +13,7 @@
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/math/index.h>
+#include <pliant/math/max_or_nan.h>
 #include <pliant/project/project.h>
 
 namespace pliant::projection {
@@ -43,11 +44,6 @@ inline constexpr double kStuckGap = 1e-5, kPatience = 10;
 inline constexpr double kMaxUndoneShare = 0.25;
 /// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
 inline constexpr double kTaut = 1e-9;
-
-/// Returns the larger of two gaps, or NaN if the first is NaN.
-inline double max_or_nan(double gap, double largest) {
-  return gap <= largest ? largest : gap;
-}
 
 /// Returns the gap of a joint, m, below which a gap is rounding.
 inline double rounding(const JointModel& joint, const Workspace<double>& work) {

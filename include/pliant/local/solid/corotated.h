@@ -24,7 +24,7 @@ Mat3<T> nearest_rotation(const Mat3<T>& F) {
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const Mat3<T> C = cofactors(R);
     const T J = determinant(R, C);
-    if (!(least_of(J) > 0))
+    if (!(min_lane(J) > 0))
       throw InvertedElement(
           "an element of corotated material is inverted (det F <= 0); use a smaller step, or the neo-Hookean "
           "law, which allows inverted elements");
@@ -37,7 +37,7 @@ Mat3<T> nearest_rotation(const Mat3<T>& F) {
         step += change * change;
         R(i, j) = next;
       }
-    if (least_of(T(tolerance) - step) > 0) return R;
+    if (min_lane(T(tolerance) - step) > 0) return R;
   }
   throw InvertedElement(
       "an element of corotated material is almost flat: no nearest rotation was found in 60 iterations; use "

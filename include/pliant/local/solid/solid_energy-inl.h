@@ -32,11 +32,11 @@ SolidEnergy<Element, Law>::SolidEnergy(const Nodes& rest, const Eigen::MatrixXi&
     for (const TetrahedronPoint& at : Element::rule) {
       const Mat3<Pack> A = Element::gradient(at, X), C = cofactors(A);
       const Pack J = determinant(A, C);
-      if (!(least_of(J) > 0)) {
+      if (!(min_lane(J) > 0)) {
         std::ostringstream text;
         text << "one of the elements " << pack * Pack::kLanes << " to "
              << std::min((pack + 1) * Pack::kLanes, corners_.n_elements()) - 1
-             << " is inverted or flat at rest; its smallest det dX/dxi is " << least_of(J) << " m^3";
+             << " is inverted or flat at rest; its smallest det dX/dxi is " << min_lane(J) << " m^3";
         throw std::invalid_argument(text.str());
       }
       Point point{scaled(Pack(1.0) / J, Mat3<Pack>(C.transpose())), J * Pack(at.weight)};
