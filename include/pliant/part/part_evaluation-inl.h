@@ -21,8 +21,8 @@ namespace detail {
 /// Distance below a tip, relative to its z, at which limits along z towards the tip are evaluated.
 inline constexpr double kBelowTip = 1e-9;
 
-/// Evaluates the positions of material points. Calls store(i, jet, lane) for each point number i, which is in
-/// this lane of the jet. S is the scalar of the jet.
+/// Evaluates the positions of material points. Calls store(i, jet, lane) for each material point number i;
+/// `lane` is the lane of the jet that has this point. S is the scalar of the jet.
 template <class S, class P, class Store>
 void evaluate_positions(const PartEvaluation& part, const std::vector<Material<double>>& at,
                         const ParameterValues<P>& values, Store&& store) {

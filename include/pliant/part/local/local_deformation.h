@@ -42,7 +42,7 @@ class LocalDeformation {
  public:
   virtual ~LocalDeformation() = default;
 
-  /// The mesh that pictures and contact show.
+  /// The mesh whose surface pictures show and contact detection uses.
   const LocalMesh& mesh() const { return mesh_; }
   /// Number of local coordinates.
   Eigen::Index n_d() const { return initial_.size(); }
@@ -64,8 +64,8 @@ class LocalDeformation {
   /// Returns a description in words, as in "600 local, of 200 nodes".
   virtual std::string description() const = 0;
 
-  /// Returns the weights of a material point. The result is empty for a point inside a shell, where the local
-  /// deformation has no value.
+  /// Returns the weights of a material point over the nodes of at_nodes(). The result is empty for a point
+  /// inside a shell, where the local deformation has no value.
   virtual NodeWeights weights(const Part& part, const Material<double>& m) const = 0;
   /// Returns the values at the nodes of weights(): displacements (m) from local coordinates, or velocities
   /// (m/s) from their rates. buffer: storage that the result may refer to.
@@ -104,10 +104,11 @@ class LocalDeformation {
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 
-  /// Computes A = M^-1 for the joints of the part: the changes of (v_r, d_dot at the points) by impulses g on
-  /// (v_r, the points). points: the attachment points of the joints.
+  /// Computes A = M^-1 for the joints of the part and stores it in the workspace. A maps impulses g on (v_r,
+  /// the points) to the changes of (v_r, d_dot at the points). points: the attachment points of the joints.
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
-  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause.
+  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause. compliance()
+  /// must have run on the workspace with these points.
   void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
                 Eigen::Ref<VecX<double>> d_dot) const;
   /// Returns M of rigid motion at the current positions: 6 x 6.
@@ -120,7 +121,8 @@ class LocalDeformation {
     double K = 0, D = 0;
   };
   virtual Bound stiffness_bound(const LocalWorkspace& work) const = 0;
-  /// Returns the inverse of the effective mass (1/kg) of a material point if only the local coordinates move.
+  /// Returns the inverse of the effective mass (1/kg) of a material point if only the local coordinates move;
+  /// for modes the largest value over all directions.
   virtual double mobility(const NodeWeights& at) const = 0;
 
  protected:
@@ -129,7 +131,7 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// compliance() and push_all() without a LocalResponse, by M^-1.
+  /// Implement compliance() and push_all() by M^-1, for a workspace without a LocalResponse.
   virtual MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                            LocalWorkspace& work) const = 0;
   virtual void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,

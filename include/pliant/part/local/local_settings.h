@@ -59,8 +59,8 @@ struct LocalSettings {
 /// The energies of the laws of a part on a mesh.
 struct MeshEnergies {
   std::vector<std::unique_ptr<NodalEnergy>> all;
-  VecX<double>
-      own_inertia;  ///< inertia of the coordinates that one of the energies adds to those of the nodes
+  /// Inertia of the coordinates that one of the energies adds to those of the nodes; empty if none does.
+  VecX<double> own_inertia;
 };
 /// Makes the energies. Throws LocalFault if a law cannot be evaluated on the mesh, or if a second law adds
 /// coordinates.

@@ -15,7 +15,8 @@ inline constexpr double kMostLinearTurn = 0.3;
 bool linear_on_moving_shape(const Part& part);
 
 /// Returns the largest angle, rad, by which the reference shape at q_s rotates a triangle of the surface of
-/// the mesh relative to rest, in the frame of the part and without d.
+/// the mesh relative to rest, in the frame of the part and without d. Triangles without area are ignored. The
+/// part must have local deformation.
 double largest_surface_turn(const Part& part, const VecMax<double>& q_s);
 
 }  // namespace pliant
