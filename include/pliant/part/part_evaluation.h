@@ -22,8 +22,8 @@ class PartEvaluation : public PartDescription {
   // Dynamics. q_s and q_s_dot are the dynamic parameters and their rates, omega (rad/s) is in the body frame.
   // The overloads for Dual<1> also compute the derivative along the direction of the dual parts.
 
-  /// Computes the mass matrix and the inertial forces, Eq. (11), of a part without local deformation. A rigid
-  /// part has the constant M of its rest shape; if s is linear in q_s, moments replace the sums over the mass
+  /// Computes the mass matrix and the inertial forces, Eq. (11), over (c, omega, q_s) at d = 0. A rigid part
+  /// has the constant M of its rest shape. If s is linear in q_s, moments replace the sums over the mass
   /// points.
   void evaluate_inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                         Inertia<double>& out, Counters& counters) const;

@@ -36,7 +36,7 @@ struct Corners {
   std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
-/// Returns the material point in the direction g of the mesh pattern at the radius w.
+/// Returns the material point in the direction g of the mesh pattern with the radial coordinate w.
 struct Labels {
   const ShapeFace& shape;
   ShapeParameters a;
