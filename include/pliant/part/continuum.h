@@ -2,9 +2,10 @@
 // the present shape,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
-// Damping adds beta P_v to P, with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants
-// instead of a matrix K_s. F and its derivatives come from dual numbers: the dual part of a material point is
-// a direction in the rest body. The rest shape is that of time 0.
+// W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
+// with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants instead of a matrix K_s. F
+// and its derivatives come from dual numbers: the dual part of a material point is a direction in the rest
+// body. The rest shape is that of time 0.
 #pragma once
 
 #include <array>

@@ -66,10 +66,10 @@ class Parameters {
   const std::vector<int>& dynamic() const { return dynamic_; }
   /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
-  /// Updates the lists of dynamic parameters, acting links and frozen values. Initial values that the user
-  /// did not set become the rest values, and limits become the ranges of ParameterSpec. The caller calls this
-  /// function after `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond
-  /// kMaxGlobal dynamic parameters.
+  /// Updates the lists of dynamic parameters, acting links and frozen values. Where the user set no initial
+  /// value or limits, it sets them to the rest value and to the range of the ParameterSpec. Must be called
+  /// after `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal
+  /// dynamic parameters.
   void update();
 
   /// Returns the values of all parameters: the dynamic ones from q_s and q_s_dot, the frozen ones at their

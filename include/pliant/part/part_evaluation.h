@@ -52,8 +52,8 @@ class PartEvaluation : public PartDescription {
   /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where the derivatives of the
   /// trigonometric map are infinite (exponents below 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
-  /// Returns the inside-outside function at a position p: w - 1, with w of the material point at p, which the
-  /// inverse deformations give. The result is zero on the surface and negative inside.
+  /// Returns the inside-outside function at a position p (m, body frame): w - 1, where w is the radial
+  /// coordinate of the material point at p. It is zero on the surface and negative inside.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Returns the gradient of the inside-outside function (1/m); at the tip of a full taper the limit along z.
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;

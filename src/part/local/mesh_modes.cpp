@@ -260,7 +260,7 @@ ModalBasis make_mesh_modes(const Part& part, const LocalSettings& settings) {
   const Eigen::Index available = root.size() - Q.cols();
   if (settings.modes > available)
     throw std::invalid_argument(problem.part_name + std::to_string(settings.modes) +
-                                " modes of a mesh that has " + std::to_string(available) +
+                                " modes are requested, but its mesh has only " + std::to_string(available) +
                                 "; expected no more");
   const MeshModes modes = diagonalised(elasticity, lowest_modes(problem, elasticity, Q));
 
