@@ -1,6 +1,6 @@
 // The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with the first and second
 // derivatives along a + t a_dot. The Jacobian de/da for the dynamic parameters gives the first columns of J,
-// Eq. (9); the links of the chain then multiply these columns by dT/dp (deform/link.h).
+// Eq. (9); the links of the chain then transform these columns (deform/link.h).
 #pragma once
 
 #include <type_traits>

@@ -2,9 +2,9 @@
 // material points in the frame of the part. Rigid motion and changes of the global parameters could be
 // written in d as well; reference conditions W^T d = 0 remove this redundancy
 // (include/pliant/part/local/README.md). LocalDeformation is the interface of all choices of S; one call
-// handles a whole part:
-//   nodal_deformation.h   d at the nodes of a mesh
-//   modal_deformation.h   d = sum Phi_j q_j of global modes
+// handles a whole part. The choices are
+//   nodal_deformation.h   displacements d of the nodes of a mesh
+//   modal_deformation.h   amplitudes q_j of global modes Phi_j: d = sum Phi_j q_j
 // The displacement of a material point is d = sum weight_i d_i, where at_nodes() computes the nodal values
 // d_i from q_d.
 #pragma once
@@ -55,7 +55,7 @@ class LocalDeformation {
   const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
-  /// Returns the name of a local coordinate, as in "d[17].x".
+  /// Returns the name of local coordinate number k, for example "d[17].x" or "mode[3]".
   virtual std::string coordinate_name(Eigen::Index k) const = 0;
   /// Returns the unit of a local coordinate.
   virtual const char* unit(Eigen::Index k) const = 0;
@@ -81,7 +81,7 @@ class LocalDeformation {
   /// Returns the oscillators if the elasticity is diagonal in the local coordinates, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
-  // The dynamics, one function a stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
+  // The dynamics, one function for each stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
   // workspace must come from workspace(), and LocalWorkspace::place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;

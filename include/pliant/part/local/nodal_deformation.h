@@ -46,7 +46,7 @@ struct NodalWorkspace final : LocalWorkspace {
   VecMax<double> of_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
   VecMax<double> kappa;
-  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one a column.
+  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one in each column.
   MatX<double> kappa_of, a_of;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;

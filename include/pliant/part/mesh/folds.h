@@ -12,7 +12,7 @@ namespace pliant {
 /// the chain folds the body over.
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
-/// Returns whether a piece of the surface is turned inside out: min_volume_ratio() is negative.
+/// Returns whether a piece of the surface is turned inside out: min_volume_ratio() is below -1e-12.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
 /// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the
