@@ -165,8 +165,9 @@ TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending ag
   part->prepare();
   const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt();
   auto nearest = [&](double to) { return (omega.array() / to - 1).abs().minCoeff(); };
-  // G = 1, rho = 1. The frequencies n pi c / L of torsion are exact; those of bending are from Timoshenko's
-  // beam with L / r = 10.
+  // The shear modulus and the density are 1, so that the speed of torsional waves is c = 1. The frequencies
+  // n pi c / L of torsion, with the length L = 10, are exact. Those of bending are from Timoshenko's beam
+  // with the radius L / 10.
   CHECK(nearest(kPi / 10) <= 1e-6);
   CHECK(nearest(2 * kPi / 10) <= 1e-4);
   const double unit = std::sqrt(2.6 / 4) / 100;

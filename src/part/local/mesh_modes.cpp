@@ -83,8 +83,8 @@ MatX<double> basis_of_conditions(const Part& part, const LocalMesh& mesh, const 
   return orthonormal_basis(mass.root(all), dependent);
 }
 
-/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface of
-/// Spectra.
+/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface
+/// that the library Spectra requires.
 class Flexibility {
  public:
   using Scalar = double;
@@ -111,7 +111,7 @@ class Flexibility {
   }
 
  private:
-  /// Returns A x without the conditions.
+  /// Returns A x, the response without the conditions.
   MatX<double> unconstrained(const MatX<double>& x) const {
     MatX<double> y = mass_.transposed(x);
     factor_->solve(y);

@@ -32,8 +32,8 @@ struct PolynomialFields {
   MatX<double> at(const Eigen::Matrix3Xd& X) const { return L.values(X) * T.transpose(); }
 };
 
-/// Returns fields that are orthonormal in the mean over the body, by Cholesky factors of the Gram matrix,
-/// applied twice.
+/// Returns fields that are orthonormal in the mean over the body, by Cholesky factors of the Gram matrix. The
+/// second pass removes the rounding errors of the first one.
 PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const BodyRule& rule) {
   PolynomialFields fields{L, MatX<double>::Identity(L.size(), L.size())};
   const VecX<double> weight = rule.volume / rule.volume.sum();

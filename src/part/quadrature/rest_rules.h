@@ -30,8 +30,7 @@ struct RestShape {
                       ///< ring
 };
 
-// Nodes along one direction. n: level of refinement, the number of nodes in a panel; a periodic panel has 2
-// n.
+// Nodes along one direction. n: number of nodes in a panel; a periodic panel has twice as many.
 
 /// A plane section at zeta = z / h, and its weight.
 struct SliceNode {

@@ -35,16 +35,16 @@ inline int size_at(int level) {
 /// Random numbers by xorshift, equal on every machine.
 class Draw {
  public:
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double uniform() {
     seed_ ^= seed_ << 13;
     seed_ ^= seed_ >> 7;
     seed_ ^= seed_ << 17;
     return static_cast<double>(seed_ >> 11) * 0x1.0p-53;
   }
-  /// In [-1, 1).
+  /// Returns a number in [-1, 1).
   double symmetric() { return 2 * uniform() - 1; }
-  /// An index below n.
+  /// Returns an index below n.
   std::size_t below(std::size_t n) {
     return std::min(n - 1, static_cast<std::size_t>(uniform() * static_cast<double>(n)));
   }
@@ -59,7 +59,7 @@ struct Column {
   std::vector<Eigen::Index> node;  ///< number of the node of each point
   void end_node(Eigen::Index which) { node.resize(points.size(), which); }
 };
-/// Columns at several places.
+/// Columns at several places; n_nodes is the number of nodes along the direction.
 struct Columns {
   std::vector<Column> columns;
   Eigen::Index n_nodes = 0;
