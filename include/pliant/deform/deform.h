@@ -41,6 +41,7 @@ template <class Deform, class = void>
 inline constexpr int amplitudes_of = deform_size<Deform>;
 template <class Deform>
 inline constexpr int amplitudes_of<Deform, std::void_t<decltype(Deform::amplitudes)>> = Deform::amplitudes;
+/// T(p, h; b) for fixed b. If the deformation has the member prepare, its terms are computed once.
 template <class Deform, class T, class = void>
 struct Prepared {
   explicit Prepared(const Vec<T, deform_size<Deform>>&) {}
@@ -78,7 +79,7 @@ template <class Deform>
 inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
 
 /// Returns whether a deformation is exactly the identity for all p and h. b: its parameters, an array; a
-/// parameter that carries a nonzero derivative differs from its default.
+/// dual number with a nonzero derivative differs from the default.
 template <class Deform, class P>
 bool is_identity(const P* b) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(deform_amplitudes<Deform>); ++k)

@@ -49,6 +49,8 @@ struct ModalWorkspace final : LocalWorkspace {
 
 class ModalDeformation final : public LocalDeformation {
  public:
+  /// Uses the damping and the initial values of the settings. Throws std::invalid_argument if the initial
+  /// displacements are larger than the part.
   ModalDeformation(const Part& part, const LocalSettings& settings, ModalBasis basis);
 
   const ModalBasis& basis() const { return basis_; }

@@ -78,7 +78,8 @@ struct NodalWorkspace final : LocalWorkspace {
 
 class NodalDeformation final : public LocalDeformation {
  public:
-  /// Throws std::invalid_argument if the mesh or an energy cannot be made.
+  /// Throws std::invalid_argument if the mesh or an energy cannot be made, or if the initial displacements
+  /// are larger than the part.
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
