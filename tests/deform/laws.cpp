@@ -42,7 +42,8 @@ Numbers<Deform> draw(Draws& draws) {
   return b;
 }
 constexpr double kHalfHeight = 1.7;
-/// Returns a random point of a body that is so slim that no bend in the range folds it: 1 - k r > 0.4.
+/// Returns a random position in a solid that is so slim that no bend in the range folds it: the determinant
+/// 1 - k r of the bend is above 0.4.
 Vec3<double> body_point(Draws& draws) {
   return {draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), draws.uniform(-kHalfHeight, kHalfHeight)};
 }
@@ -242,8 +243,8 @@ TEST_CASE("determinants of the deformations agree with closed forms", "[deform]"
   }
 }
 
-// The kernel that applies a link of a chain: J <- [F J + T_h dh/dq, G_T], and the rates for a motion of the
-// incoming point, of the half height and of the link's own parameters.
+// The kernel that applies a link of a chain: J <- [F J + T_h dh/da, G_T], and the rates s1 and s2. The
+// incoming position, the half height and the parameters of the link change in time.
 TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", AllDeforms) {
   constexpr int K = deform_size<TestType>;
   Draws draws(6);

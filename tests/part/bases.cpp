@@ -32,7 +32,7 @@ const ModalDeformation& modal(const Part& part) {
   return dynamic_cast<const ModalDeformation&>(*part.local());
 }
 
-/// Returns omega r / c_t of the modes of a unit sphere.
+/// Returns omega r / c_t of the modes of a unit sphere; c_t = 1 is the speed of shear waves.
 VecX<double> etas(int degree, double nu = 0.3) {
   const auto part = make_part("ball", "sphere", {}, 1);
   part->rest({{"r", 1}}).deform_locally(polynomials(degree, nu));
@@ -165,8 +165,9 @@ TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending ag
   part->prepare();
   const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt();
   auto nearest = [&](double to) { return (omega.array() / to - 1).abs().minCoeff(); };
-  // G = 1, rho = 1. The frequencies n pi c / L of torsion are exact; those of bending are from Timoshenko's
-  // beam with L / r = 10.
+  // The shear modulus and the density are 1, so that the speed of torsional waves is c = 1. The frequencies
+  // n pi c / L of torsion, with the length L = 10, are exact. Those of bending are from Timoshenko's beam
+  // with the radius L / 10.
   CHECK(nearest(kPi / 10) <= 1e-6);
   CHECK(nearest(2 * kPi / 10) <= 1e-4);
   const double unit = std::sqrt(2.6 / 4) / 100;
@@ -176,8 +177,8 @@ TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending ag
 
 TEST_CASE("a long cylinder by polynomials of degree 10: three bending frequencies near those of Timoshenko",
           "[bases][long]") {
-  // The values `solid` are the reference values of tests/local/solid_modes.cpp; `beam_error` is the error of
-  // the beam.
+  // omega L^2 sqrt(rho A / E I). The values `solid` are the reference values of tests/local/solid_modes.cpp;
+  // `beam` has those of Timoshenko's beam, and `beam_error` bounds its relative errors.
   constexpr std::array<double, 3> beam{20.3813, 49.2314, 83.9790}, solid{20.41175, 49.4462, 84.565},
       beam_error{0.0016, 0.0046, 0.0072};
   const auto part = make_part("bar", "cylinder", {}, 1);

@@ -102,7 +102,8 @@ double dense_energy(const Part& part, const Law& law, const VecMax<double>& q, b
   return sum;
 }
 
-/// Returns omega^2 of the dynamic parameters in free motion with P = L = 0, in rising order.
+/// Returns omega^2 of the dynamic parameters in free motion without momentum and angular momentum, in rising
+/// order.
 VecX<double> omega2(const Part& part) {
   VecMax<double> q(part.n_s());
   for (int k = 0; k < part.n_s(); ++k) q[k] = part.parameters().moving(k).rest_value();
@@ -130,7 +131,7 @@ TEST_CASE("the strain energy is the integral of the law over the rest body", "[c
   }
 }
 
-TEST_CASE("with homogeneous strain one point represents all, and the energy is exact", "[continuum]") {
+TEST_CASE("with homogeneous strain one quadrature point suffices, and the energy is exact", "[continuum]") {
   for (const std::string& law : kSolidLaws) {
     const auto part = make(bodies()[0], law);
     CHECK(part->continuum()->points().n_points == 1);
@@ -253,7 +254,8 @@ TEST_CASE("a twisted cylinder has the stiffness G J_p / L", "[continuum]") {
 
 TEST_CASE("a bent bar has the stiffness of plane sections with constant shape", "[continuum]") {
   // Sections do not contract laterally, so that lambda + 2 mu replaces E. The energy is
-  // (lambda + 2 mu) I k^2 L / 2, with the curvature k = angle / half.
+  // (lambda + 2 mu) I k^2 L / 2, with the second moment of area I, the length L = 2 half and the curvature
+  // k = angle / half.
   const double r = 0.05, half = 1, I = kPi / 4 * std::pow(r, 4);
   const auto part =
       make({"cylinder", {"bend"}, {{"a1", r}, {"a2", r}, {"a3", half}}, {"bend.angle"}}, "neo_hookean");

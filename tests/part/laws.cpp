@@ -243,7 +243,7 @@ TEST_CASE("the normal is perpendicular to the tangents of the surface", "[part]"
   });
 }
 
-TEST_CASE("parameters are named by link and name, repeated links by number", "[part]") {
+TEST_CASE("a parameter of a link is named link.parameter, and repeated links are numbered", "[part]") {
   const std::unique_ptr<Part> part =
       make_part("p", "ellipsoid", {"taper", "twist", "taper", "bend", "taper"}, 1000);
   CHECK(part->parameters().names() ==

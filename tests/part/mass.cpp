@@ -184,7 +184,7 @@ TEST_CASE("areas of shells", "[mass]") {
   // A cone with a tip: the lateral area pi r s (s: slant height) and the base.
   CHECK(solid(*rigid("cone", {}, {}, true)).mass ==
         Approx(kPi * 2 * std::sqrt(8.0) + kPi * 4).epsilon(1e-13));
-  // An octahedron of unit axes: eight triangles of side sqrt 2.
+  // An octahedron with unit semi-axes: eight triangles of side sqrt 2.
   CHECK(solid(*rigid("superellipsoid", {{"eps1", 2}, {"eps2", 2}}, {}, true)).mass ==
         Approx(8 * std::sqrt(3.0) / 2).epsilon(1e-12));
   // A spheroid: 2 pi a^2 (1 + (1 - e^2)/e artanh e), a = 2, c = 1.
@@ -198,7 +198,8 @@ TEST_CASE("areas of shells", "[mass]") {
 }
 
 TEST_CASE("volumes and centres of deformed solids", "[mass]") {
-  // Taper: V (1 + tx ty <zeta^2>); twist, shear and bend_offset conserve the volume.
+  // A taper changes the volume V to V (1 + tx ty <zeta^2>), with the mean <zeta^2> over the solid; twist,
+  // shear and bend_offset conserve the volume.
   for (double eps : {0.1, 0.5, 1.0, 2.0, 5.0}) {
     const long double a[3] = {1, 1, 1};
     const long double V = test::moment(a, eps, eps, 0, 0, 0), zz = test::moment(a, eps, eps, 0, 0, 2) / V;

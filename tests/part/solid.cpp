@@ -56,7 +56,8 @@ struct Geometry {
   double volume = 0, min_quality = kInfinity, min_jacobian = kInfinity;
 };
 /// Returns the volume of a mesh with nodes at s, and the smallest quality and Jacobian of its elements. The
-/// quality is 12 (3 V)^(2/3) over the sum of the squared edges, 1 for a regular tetrahedron. The Jacobian is
+/// quality is 12 (3 V)^(2/3), with the volume V, over the sum of the squared edge lengths; it is 1 for a
+/// regular tetrahedron. The Jacobian is
 /// the smallest determinant in a quadratic element over the mean determinant.
 Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   Geometry g;

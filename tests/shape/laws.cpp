@@ -57,7 +57,7 @@ double size_of(const ShapeVec<Shape, double>& a) {
     size = std::max(size, Shape::template e<double>(m, a).norm());
   return size;
 }
-/// Returns the step of finite differences, from the scale of the parameter.
+/// Returns the step of finite differences for a parameter of value a: 1e-3 of its scale.
 Long step_of(double a) {
   return 1e-3L * std::max(std::abs(a), 0.1);
 }

@@ -16,8 +16,8 @@ struct Bend {
   static constexpr std::array<ParameterSpec, 2> parameters{{
       angle("angle", {-kPi, kPi}, {-3.1, 3.1}, "turn of the axis between zeta = 0 and zeta = 1",
             Follows::section),
-      angle("direction", {-6.3, 6.3}, {-6.3, 6.3}, "azimuth towards which the axis bends, from x to y",
-            Follows::section),
+      angle("direction", {-6.3, 6.3}, {-6.3, 6.3},
+            "azimuth towards which the axis bends, measured from x towards y", Follows::section),
   }};
   static constexpr Sections sections = Sections::tilt;
   static constexpr int amplitudes = 1;

@@ -42,7 +42,8 @@ class Chain {
   /// Returns the properties of the links, in order.
   std::vector<LinkInfo> links() const { return {link_info<Links>()...}; }
 
-  /// Returns whether any link acts: it is not the identity, or one of its parameters is dynamic.
+  /// Returns whether any link acts. A link acts if it is not the identity or one of its parameters is
+  /// dynamic. all: the parameters of all links, one link after the other.
   template <class P>
   bool acts([[maybe_unused]] LinkParameters<P> all) const {
     return (one_acts<Links>(all) || ...);

@@ -7,8 +7,8 @@
 //   sections           image of the planes z = const, which decides the quadrature of the mass
 //   apply(p, h, b)     T(p, h; b); the identity if all parameters have their defaults
 //   inverse(p, h, b)   the position that apply maps to p
-//   prepare(b)         optional: returns terms of T that depend on b alone; apply(p, h, b, terms) is then
-//                      required too; it returns T(p, h; b)
+//   prepare(b)         optional: returns terms of T that depend on b alone. A deformation with prepare also
+//                      needs apply(p, h, b, terms), which returns T(p, h; b)
 //   amplitudes         optional: a number n <= number of parameters. While the first n parameters have their
 //                      defaults, T is the identity for all values of the others. Default: all parameters
 #pragma once
@@ -24,7 +24,7 @@
 
 namespace pliant {
 
-/// The image of the planes z = const under a deformation.
+/// The image of the planes z = const (the sections of the shape) under a deformation.
 enum class Sections {
   stay_affine,  ///< the map is affine in (x, y, z); quadratic functions of the position remain quadratic
   stay_plane,   ///< each plane z = const is mapped affinely into itself
@@ -41,6 +41,7 @@ template <class Deform, class = void>
 inline constexpr int amplitudes_of = deform_size<Deform>;
 template <class Deform>
 inline constexpr int amplitudes_of<Deform, std::void_t<decltype(Deform::amplitudes)>> = Deform::amplitudes;
+/// T(p, h; b) for fixed b. If the deformation has the member prepare, its terms are computed once.
 template <class Deform, class T, class = void>
 struct Prepared {
   explicit Prepared(const Vec<T, deform_size<Deform>>&) {}
@@ -77,7 +78,8 @@ class DeformBy {
 template <class Deform>
 inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
 
-/// Returns whether a deformation with parameters b is exactly the identity.
+/// Returns whether a deformation is exactly the identity for all p and h. b: its parameters, an array; a
+/// dual number with a nonzero derivative differs from the default.
 template <class Deform, class P>
 bool is_identity(const P* b) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(deform_amplitudes<Deform>); ++k)

@@ -39,7 +39,7 @@ bool link_acts(const LinkParameters<P>& parameters) {
 
 /// Applies a link whose parameter number k is its only dynamic one. The shape and all links before it must be
 /// frozen: the incoming positions are then constant. One Taylor2 number in this parameter gives s, J and the
-/// rates; at Level::jacobian a dual number gives s and J.
+/// rates s1 and s2; at Level::jacobian a dual number gives s and J.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                        JetBatch<S>& batch) {
@@ -72,7 +72,8 @@ template <class Deform, class P, class S>
 }
 
 /// Updates the columns of J of one material point by the partial derivatives of one link, Eq. (9). moved: T
-/// with derivatives by p (0 to 2), h (3) and b (from 4 on); n_columns: number of columns before the link.
+/// with its derivatives by p (directions 0 to 2), h (direction 3) and b (from direction 4 on). n_columns:
+/// number of columns before the link.
 template <int N, class P, class S>
 void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
                    const LinkParameters<P>& parameters, int n_columns, Jet<S>& jet) {

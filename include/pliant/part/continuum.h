@@ -2,9 +2,10 @@
 // the present shape,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
-// Damping adds beta P_v to P, with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants
-// instead of a matrix K_s. F and its derivatives come from dual numbers: the dual part of a material point is
-// a direction in the rest body. The rest shape is that of time 0.
+// W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
+// with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants instead of a matrix K_s. F
+// and its derivatives come from dual numbers: the dual part of a material point is a direction in the rest
+// body. The rest shape is that of time 0.
 #pragma once
 
 #include <array>
@@ -40,8 +41,8 @@ struct ContinuumLawInfo {
 /// Returns the laws. A law has the name of the corresponding law of local deformation.
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
-/// Quadrature points of the rest body with derivatives along directions X: x, y, z of a solid, two tangents
-/// of a shell.
+/// Quadrature points of the rest body with derivatives along directions X of the rest body: x, y and z for a
+/// solid, two orthonormal tangents for a shell.
 struct StrainPoints {
   std::array<std::vector<Material<Dual<1, Pack>>>, 3>
       at;                    ///< for each direction X all points, in packs of four
@@ -49,8 +50,8 @@ struct StrainPoints {
   int n_points = 0;
   int directions = 3;
   std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
-  /// Upper bound of the relative change of the integrals when the points are doubled once more; 0 for
-  /// "affine".
+  /// Relative change of the integrals when the points are doubled once more, at least kStrainSettled; 0 for
+  /// "affine". It is kStrainSettled too if finer rules did not reduce a change of at most 100 kStrainSettled.
   double settled = 0;
 };
 
@@ -128,20 +129,21 @@ class ContinuumEnergy {
   const ContinuumSettings& settings() const { return settings_; }
   const StrainPoints& points() const { return points_; }
 
-  /// Returns the energy, J.
+  /// Returns the strain energy at q_s, J.
   double energy(const Part& part, const VecMax<double>& q_s) const;
-  /// Adds the elastic force -dE/dq_s and the viscous force to f. Returns the power of the viscous force (W,
-  /// at most 0). Throws InvertedElement if the material at a quadrature point is turned inside out.
+  /// Adds the elastic force -dE/dq_s and the viscous force to f (n_s numbers). beta: factor of the viscous
+  /// stress, s. Returns the power of the viscous force (W, at most 0). Throws InvertedElement if the material
+  /// of a solid is turned inside out at a quadrature point.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
-  /// Computes force and power with their derivatives along the direction of the dual parts of q_s and
-  /// q_s_dot.
+  /// The same function with derivatives along the direction of the dual parts of q_s and q_s_dot.
   Dual<1> add_force(const Part& part, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, double beta,
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
   /// Returns the exact d2E/dq_s2, n_s x n_s.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
   /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
-  /// positive semidefinite. For a quadratic W of the strain it is stiffness() without geometric stiffness.
+  /// positive semidefinite. If W is quadratic in the strain, it is stiffness() without the geometric
+  /// stiffness, which is the part due to second derivatives of the strain.
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:

@@ -9,7 +9,7 @@ struct Counters {
   long rate_points = 0;      ///< mass points or nodes whose Jdot qs_dot was evaluated
   long mass_matrices = 0;    ///< mass matrices computed
   long inertial_forces = 0;  ///< inertial forces g_q evaluated
-  long point_jets = 0;       ///< material points evaluated for forces, joints and tracks
+  long point_jets = 0;       ///< material points evaluated for forces, joints and recorded paths (tracks)
   long surfaces = 0;         ///< surfaces evaluated for output
   long strain_points = 0;    ///< quadrature points whose strain was evaluated
 

@@ -64,7 +64,7 @@ inline Level inertia_level(int n_s, bool rates) {
   return rates ? Level::rates : (n_s > 0 ? Level::jacobian : Level::position);
 }
 
-/// Sums over mass points for n_s dynamic parameters. Each sum has four lanes.
+/// Sums over mass points for n_s dynamic parameters. Each sum has four lanes. S: Pack, or Dual<1, Pack>.
 template <class S>
 struct MassPointSums {
   int n_s;
@@ -119,8 +119,8 @@ struct MassPointSums {
     }
   }
 
-  /// Adds m G^T b to the sums of -g_q, Eq. (11). b: acceleration of the mass point for zero accelerations of
-  /// the part. rates: whether qs_dot is not zero.
+  /// Adds m G^T b to the sums of -g_q, Eq. (11), where b is the acceleration of the mass point if all
+  /// generalised accelerations are zero. rates: whether qs_dot is not zero.
   void add_inertial_force(const Jet<S>& jet, const Pack& m, const Vec3<S>& omega, bool rates) {
     Vec3<S> acceleration = omega.cross(omega.cross(jet.s));
     if (rates) {

@@ -18,7 +18,7 @@ class LinearInertia {
 
   /// Returns M at q_s.
   MatMax<double> mass_matrix(const VecMax<double>& q_s) const;
-  /// Computes M and g_q, as Part::evaluate_inertia() does.
+  /// Computes M and g_q; arguments and results are those of Part::evaluate_inertia().
   void evaluate(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                 Inertia<double>& out) const;
   void evaluate(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,

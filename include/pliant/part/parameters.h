@@ -23,7 +23,7 @@ struct Parameter {
   double initial;             ///< value at time 0
   double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
-  Range limits;                                      ///< one-sided limits of a dynamic parameter
+  Range limits;  ///< lower and upper limit of a dynamic parameter; each is a one-sided constraint
   bool initial_given = false, limits_given = false;  ///< whether the user set initial and limits
 
   /// The rest value at time 0.
@@ -66,9 +66,10 @@ class Parameters {
   const std::vector<int>& dynamic() const { return dynamic_; }
   /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
-  /// Updates the lists of dynamic parameters, acting links and frozen values. To be called after `dynamic` or
-  /// `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
-  /// parameters.
+  /// Updates the lists of dynamic parameters, acting links and frozen values. Where the user set no initial
+  /// value or limits, it sets them to the rest value and to the range of the ParameterSpec. Must be called
+  /// after `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal
+  /// dynamic parameters.
   void update();
 
   /// Returns the values of all parameters: the dynamic ones from q_s and q_s_dot, the frozen ones at their

@@ -36,10 +36,11 @@ class Part : public PartEvaluation {
   double total_mass() const { return constants_.rest_inertia.mass; }
   /// The inertia at rest. A rigid part keeps it at all times.
   const Inertia<double>& rest_inertia() const { return constants_.rest_inertia; }
-  /// The largest half extent of the body at rest, m.
+  /// The largest absolute coordinate of the surface at rest in the body frame, m, from a sample of its
+  /// points.
   double size() const { return constants_.size; }
-  /// Returns the smallest diagonal entry of M that counts as inertia of the k-th dynamic parameter (kg for a
-  /// length, else kg m^2). Smaller entries are rounding errors for a body of this mass and size.
+  /// Returns the largest diagonal entry of M of the k-th dynamic parameter that may be a rounding error for a
+  /// part of this mass and size (kg for a length, else kg m^2). Only larger entries are an inertia.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.

@@ -28,7 +28,8 @@ inline std::string part_text(const Range& r) {
   return "[" + part_text(r.min) + ", " + part_text(r.max) + "]";
 }
 
-/// Returns the mass matrix of a rigid part, with zero inertial forces.
+/// Returns the mass matrix of a rigid part, with zero inertial forces. The arguments are those of
+/// PartDescription::inertia().
 inline Inertia<double> rigid_part_inertia(double mass, const Mat3<double>& about_origin,
                                           const Vec3<double>& centre) {
   Inertia<double> inertia;

@@ -38,7 +38,7 @@ class PartDescription {
   Part& velocity(const Vec3<double>& c_dot, const Vec3<double>& omega);
   /// Sets rest values (m, rad or 1). A frozen parameter keeps its rest value.
   Part& rest(const Named& values);
-  /// Sets a rest value that is a function of time.
+  /// Sets a rest value that is a function of time. The parameter must be dynamic when prepare() runs.
   Part& rest(const std::string& parameter, TimeFunction of_time);
   /// Sets values at time 0, and makes the parameters dynamic.
   Part& initial(const Named& values);
@@ -48,8 +48,8 @@ class PartDescription {
   Part& stiffness(const Named& values);
   /// Sets a symmetric block of K_s over the named parameters, and makes them dynamic.
   Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
-  /// Sets one-sided limits of a dynamic parameter. prepare() checks them against the range that its rest
-  /// value allows.
+  /// Sets the lower and the upper limit of a dynamic parameter. Each limit is a one-sided constraint.
+  /// prepare() checks the limits against the range that the rest value of the parameter allows.
   Part& limits(const std::string& parameter, Range range);
   /// Makes the part elastic: adds the strain energy of the map from the rest shape to the present shape to
   /// the energy of K_s. A part that deforms locally gets its elasticity from the laws of its local

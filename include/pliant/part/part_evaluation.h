@@ -22,12 +22,15 @@ class PartEvaluation : public PartDescription {
   // Dynamics. q_s and q_s_dot are the dynamic parameters and their rates, omega (rad/s) is in the body frame.
   // The overloads for Dual<1> also compute the derivative along the direction of the dual parts.
 
-  /// Computes the mass matrix and the inertial forces, Eq. (11), by the mass points of the part.
+  /// Computes the mass matrix and the inertial forces, Eq. (11), over (c, omega, q_s) at d = 0. A rigid part
+  /// has the constant M of its rest shape. If s is linear in q_s, moments replace the sums over the mass
+  /// points.
   void evaluate_inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes only g_q, for a rigid part. The other fields of out keep the values from evaluate_inertia().
+  /// Computes only g_q, for a rigid part, from the fields M and moment of out, which evaluate_inertia() must
+  /// have computed. The fields other than g_q do not change.
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
   /// Computes position, J and rates of material points in the body frame. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
@@ -49,8 +52,8 @@ class PartEvaluation : public PartDescription {
   /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where the derivatives of the
   /// trigonometric map are infinite (exponents below 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
-  /// Returns the inside-outside function at a position p: w - 1, with w of the material point at p, which the
-  /// inverse deformations give. The result is zero on the surface and negative inside.
+  /// Returns the inside-outside function at a position p (m, body frame): w - 1, where w is the radial
+  /// coordinate of the material point at p. It is zero on the surface and negative inside.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Returns the gradient of the inside-outside function (1/m); at the tip of a full taper the limit along z.
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
@@ -59,9 +62,10 @@ class PartEvaluation : public PartDescription {
   Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
   std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
                                     const ParameterValues<double>& values) const;
-  /// Returns whether a piece of the surface is turned inside out at these values of the dynamic parameters.
+  /// Returns whether a piece of the surface is turned inside out at these values of the dynamic parameters;
+  /// see folds() in mesh/folds.h.
   bool folded(const VecMax<double>& q_s) const;
-  /// Returns the material point at the position p.
+  /// Returns the material point at the position p (m, body frame).
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
   // The kernels, for batches of material points. Primitive implements them.
@@ -70,11 +74,12 @@ class PartEvaluation : public PartDescription {
   /// (deform/jet.h).
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
-  /// Computes these jets with their derivatives along the dual parts of the values and of the material
-  /// points.
+  /// Computes the jets of jets() above with their derivatives along the dual parts of the values and of the
+  /// material points.
   virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
                     JetBatch<Dual<1, Pack>>& batch) const = 0;
-  /// Computes these jets with their derivatives along the dual parts of the values.
+  /// Computes the jets with their derivatives along the dual parts of the values; the material points are
+  /// constant.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
             JetBatch<Dual<1, Pack>>& batch) const;
 

@@ -37,8 +37,9 @@ struct PrescribedMotion {
   /// Returns the orientation at time t, body to world.
   Eigen::Quaterniond orientation_at(double t) const;
 
-  /// Returns the mean velocity of the origin from t to t + h (s), and an upper estimate of the difference
-  /// between it and the velocities of points at most `reach` (m) away from the origin, both in m/s.
+  /// Returns the mean velocity of the origin from t to t + h (s) and an upper estimate of the difference
+  /// between this mean and the velocities of all points at most `reach` (m) away from the origin, both in
+  /// m/s.
   TimeVector::Passage over(double t, double h, double reach) const;
 };
 

@@ -37,7 +37,7 @@ class Primitive final : public Part {
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  /// Evaluates these jets with their derivatives along the direction of the dual parts.
+  /// Evaluates the jets with their derivatives along the direction of the dual parts of the arguments.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);

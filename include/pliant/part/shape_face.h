@@ -50,7 +50,7 @@ class ShapeFace {
   /// the strain is unbounded: if eps changes from eps_0 to p eps_0, the deformation gradient grows as
   /// |x|^(p - 1) at the coordinate planes.
   virtual bool bounded_exponents() const = 0;
-  /// Whether e is linear in all parameters that are lengths.
+  /// Whether e is linear in the parameters that are lengths, for all values of the others.
   virtual bool linear_lengths() const = 0;
 
   // Quadrature. The rest map maps (u, v, w) to the quadrature points of the shape at rest. It is e of the
@@ -69,7 +69,8 @@ class ShapeFace {
   virtual double ring_exponent(ShapeParameters a) const = 0;
   /// Whether the plane sections z = const of the shape are known in closed form.
   virtual bool has_sections() const = 0;
-  /// Returns the area and the mean squares of the plane section at zeta = z / h. gap: 1 - |zeta|.
+  /// Returns the area and the mean squares of the plane section at zeta = z / h. gap: 1 - |zeta|. The result
+  /// has a meaning only if has_sections().
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
   /// Returns the panels of the quadrature over plane sections along zeta.
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
@@ -79,13 +80,14 @@ class ShapeFace {
 /// e(u, v, w) = x and starts in the direction of x. Throws std::runtime_error if the method does not
 /// converge: the shape is not star-shaped and needs a label function.
 Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
-/// Returns the gradient of w at x, 1/m, for a shape that has no label function. At the poles it is the limit
-/// along a meridian.
+/// Returns the gradient of the radial coordinate w at x (m), 1/m, for a shape that has no label function. At
+/// the poles it is the limit along a meridian.
 Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
 
 namespace detail {
 
-// Whether a shape has an optional member, and its rest map.
+// RestMapOf<Shape>::Map is the member RestMap of a shape, or the shape itself. has_NAME<Shape> is true if the
+// shape has the optional member NAME.
 template <class Shape, class = void>
 struct RestMapOf {
   using Map = Shape;

@@ -1,6 +1,6 @@
 // The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with the first and second
 // derivatives along a + t a_dot. The Jacobian de/da for the dynamic parameters gives the first columns of J,
-// Eq. (9); the links of the chain then multiply these columns by dT/dp (deform/link.h).
+// Eq. (9); the links of the chain then transform these columns (deform/link.h).
 #pragma once
 
 #include <type_traits>
@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-/// Fills the batch if parameter number k of the shape is its only dynamic one: one Taylor2 or dual number in
-/// a_k gives e, J and the rates.
+/// Fills the batch if parameter number k of the shape is its only dynamic one. At Level::rates one Taylor2
+/// number in a_k gives e, J, s1 and s2; at Level::jacobian a dual number gives e and J.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets_alone(int k, const LinkParameters<P>& parameters,
                                        const Material<U>* material, JetBatch<S>& batch) {
@@ -43,8 +43,9 @@ template <class Shape, class P, class S, class U>
   batch.n_columns = 1;
 }
 
-/// Fills the batch with e, J and rates, as far as batch.level requires. P: scalar of the parameters; S:
-/// scalar of the jets; U: scalar of the material points.
+/// Fills the batch with e, J and the rates s1 and s2, as far as batch.level requires, and sets the number of
+/// columns of J. If no parameter is dynamic, or at Level::position, s1 and s2 are zero and J has no columns.
+/// P: scalar of the parameters; S: scalar of the jets; U: scalar of the material points.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
                                  JetBatch<S>& batch) {

@@ -17,8 +17,8 @@ struct JetArrays {
   double* J;
 };
 
-/// Computes the shape s, J and, if q_s_dot is not zero, the rates J q_s_dot and Jdot q_s_dot of points.
-/// packs: the points in packs of four, from packs_of().
+/// Writes s, J and, if q_s_dot is not zero, the rates s1 = J q_s_dot and s2 = Jdot q_s_dot of to.n material
+/// points. packs: the points in packs of four, from packs_of().
 void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>& q_s_dot,
                 const std::vector<Material<Pack>>& packs, const JetArrays& to, Counters& counters);
 

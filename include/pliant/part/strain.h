@@ -27,8 +27,8 @@ struct Packs {
   int first, count;
 };
 
-/// Evaluates jets along each direction r of the rest body, and calls store(r, i, jet) for pack number i of
-/// the range.
+/// Evaluates the jets of a range of packs, with their derivatives along each direction r of the rest body.
+/// Calls store(r, i, jet) for pack number i of the range.
 template <class Store>
 void for_each_direction(const Packs& packs, Level level, Store&& store) {
   std::array<Jet<Dual<1, Pack>>, kBlock> jets;
@@ -44,8 +44,8 @@ inline void set_column(Mat3<Pack>& to, int r, const Vec3<Dual<1, Pack>>& from) {
   for (int i = 0; i < 3; ++i) to(i, r) = from[i].d[0];
 }
 
-/// Computes F of a block and, with Level::jacobian, dF. A shell has no third direction; its third columns are
-/// zero.
+/// Computes F of a block and, unless the level is Level::position, dF for the n_s dynamic parameters. A shell
+/// has no third direction; its third columns are zero.
 inline void evaluate(const Packs& packs, int n_s, Level level, Block& out) {
   const auto columns = static_cast<std::size_t>(level == Level::position ? 0 : n_s);
   for (std::size_t i = 0; packs.points.directions < 3 && i < static_cast<std::size_t>(packs.count); ++i) {

@@ -11,7 +11,8 @@ namespace pliant {
 void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
                  const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
                  Counters& counters);
-/// Returns the moments over the given points of a part whose s is linear in q_s (Part::linear()).
+/// Returns the moments, summed over the given mass points, of a part whose s is linear in q_s
+/// (Part::linear()).
 LinearInertia make_linear_inertia(const Part& part, const MassPoints& points);
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// Material points (u, v, w) of a solid primitive, Eq. (1): u = latitude, v = longitude, w = radius in [0, 1].
+// Material points (u, v, w) of a solid primitive, section 2 of the paper: u = latitude, v = longitude, w =
+// radial coordinate in [0, 1].
 // A material point stores the exact cosines and sines of both angles, so that poles and seams close without a
 // gap.
 #pragma once
@@ -16,8 +17,8 @@ struct Material {
   U w{1.0};
 };
 
-/// Returns the material point of two angles (rad) and a radius. Cosines and sines that differ from
-/// 0 by rounding only are set to 0.
+/// Returns the material point of two angles (rad) and a radial coordinate. Cosines and sines that differ
+/// from 0, 1 or -1 by rounding only are set to this number.
 Material<double> material_at(double u, double v, double w = 1);
 
 /// Returns the material point with its derivatives by u (rad), v (rad) and w.
@@ -32,8 +33,8 @@ inline Material<double> material_from(double cu, double su, double cv, double sv
   return {trig(cu), trig(su), trig(cv), trig(sv), w};
 }
 
-/// Returns the material point with (cos u cos v, cos u sin v, sin u) along `direction`, which may have any
-/// length. For (0, 0, 0) it returns the pole u = pi/2.
+/// Returns the material point with radial coordinate w and with (cos u cos v, cos u sin v, sin u) along
+/// `direction`, which may have any length. For (0, 0, 0) it returns the pole u = pi/2.
 Material<double> material_towards(const Vec3<double>& direction, double w = 1);
 
 /// The coordinates of a material point, for output: u and v in [-pi, pi] (rad), w in [0, 1].

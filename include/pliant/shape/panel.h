@@ -13,7 +13,7 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< from a coordinate axis to 45 degrees; e varies as |sin|^eps or |cos|^eps
+    power,     ///< 45 degrees wide, from an angle with sin = 0 or cos = 0; e varies as |sin|^eps or |cos|^eps
   };
   Kind kind;
   double from = 0, to = 0;         ///< angles of a smooth panel, rad
@@ -32,8 +32,9 @@ inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sig
 /// An interval of zeta = z / h.
 struct SectionPanel {
   double from, to;
-  bool
-      singular;  ///< true: algebraic singularities at the ends (both_ends_rule); false: analytic (gauss_rule)
+  /// true: algebraic singularities at the ends, rule both_ends_rule(); false: analytic, rule gauss_rule()
+  /// (both in math/quadrature.h).
+  bool singular;
 };
 
 namespace detail {

@@ -70,8 +70,8 @@ inline std::vector<Panel> Supertoroid::ring(const Vec<double, 6>& a, bool dynami
 inline Section Supertoroid::section(double zeta, double gap, const Vec<double, 6>& a) {
   const double q = superellipse_width(zeta, gap, a[4]), inner = a[3] - q, outer = a[3] + q;
   const Section unit = superellipse_section(a[5]);
-  // The section is between two similar superellipses. In units of the unit superellipse its area is outer^2 -
-  // inner^2 = 4 a4 q, and its mean square is outer^2 + inner^2.
+  // The section is between two similar superellipses. Relative to the unit superellipse, its area is outer^2
+  // - inner^2 = 4 a4 q, and its mean square is outer^2 + inner^2.
   const double area = 4 * a[3] * q, spread = inner * inner + outer * outer;
   return {unit.area * a[0] * a[1] * area, unit.xx * a[0] * a[0] * spread, unit.yy * a[1] * a[1] * spread};
 }

@@ -55,7 +55,8 @@ double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>&
   for (Eigen::Index k = 0; k < n; ++k)
     F.col(k) = moments(Vec3<double>(X.row(k).transpose())).cwiseQuotient(unit);
   const Vec<double, 10> wanted = moments(whole).cwiseQuotient(unit), missing = wanted - F * mass;
-  // Minimise sum m c^2 subject to sum m c f = missing; the solution is c = f^T y.
+  // Minimise sum m c^2 subject to sum m c f = missing. The sums are over nodes, c is the relative change of
+  // the mass m, and f are the moments of a node. The solution is c = f^T y.
   const Eigen::Matrix<double, 10, 10> A = F * mass.asDiagonal() * F.transpose();
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 10, 10>> solver;
   solver.setThreshold(1e-10);
@@ -139,8 +140,8 @@ NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<d
   return at;
 }
 
-/// Returns the weights of a position x of a solid. They are over the nodes of the element that contains x, or
-/// of the element in which the smallest barycentric coordinate of x is largest.
+/// Returns the weights of a position x of a solid over the nodes of one element. It is the element in which
+/// the smallest barycentric coordinate of x is largest: the element that contains x, if there is one.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Index in = 0;
   std::array<double, 4> L{};

@@ -1,5 +1,6 @@
 // A square root C of a mass matrix, M = C^T C. The mass matrix may couple nodes, equally along x, y and z.
-// Each further coordinate has an inertia of its own. x = C d are mass-normalised coordinates.
+// Each further coordinate, which an energy adds (local/nodal_energy.h), has an inertia of its own. x = C d
+// are mass-normalised coordinates.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,7 @@ class MassRoot {
   Eigen::Index size() const { return 3 * n_nodes() + own_.size(); }
   /// M over nodes.
   const Eigen::SparseMatrix<double>& of_nodes() const { return M_; }
-  /// Return C d and C^-1 x of scalar fields over nodes. Each column is a field.
+  /// Return C d and C^-1 x of scalar fields over nodes. Each column of d or x is a field.
   MatX<double> root_of_nodes(const MatX<double>& d) const;
   MatX<double> solve_of_nodes(const MatX<double>& x) const;
   /// Return C d, C^T x and C^-1 x over all coordinates.
@@ -32,7 +33,8 @@ class MassRoot {
   Eigen::SparseMatrix<double> whole() const;
 
  private:
-  /// Applies `nodal` to the rows of x, y and z, and `own` to the rows of the further coordinates.
+  /// Applies `nodal` to the rows along x, then along y, then along z, and `own` to the rows of the further
+  /// coordinates.
   template <class Nodal, class Own>
   MatX<double> each(const MatX<double>& all, Nodal&& nodal, Own&& own) const;
 

@@ -31,7 +31,7 @@ using Sparse = SparseMatrix;
 
 /// Up to this number of coordinates the dense solver is faster.
 constexpr Eigen::Index kDense = 400;
-/// Maximum number of local coordinates, because the factor of more of them needs gigabytes, and maximum
+/// Maximum number of local coordinates: the factor of more of them needs gigabytes. kMaxNumbers: maximum
 /// number of entries of fields and modes.
 constexpr Eigen::Index kMaxCoordinates = 120'000;
 constexpr double kMaxNumbers = 5e7;
@@ -83,8 +83,8 @@ MatX<double> basis_of_conditions(const Part& part, const LocalMesh& mesh, const 
   return orthonormal_basis(mass.root(all), dependent);
 }
 
-/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface of
-/// Spectra.
+/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface
+/// that the library Spectra requires.
 class Flexibility {
  public:
   using Scalar = double;
@@ -111,7 +111,7 @@ class Flexibility {
   }
 
  private:
-  /// Returns A x without the conditions.
+  /// Returns A x, the response without the conditions.
   MatX<double> unconstrained(const MatX<double>& x) const {
     MatX<double> y = mass_.transposed(x);
     factor_->solve(y);
@@ -126,7 +126,8 @@ class Flexibility {
   Eigen::LDLT<MatX<double>> inner_;
 };
 
-/// Returns the shift sigma: a tenth of the smallest omega^2 among displacements that are quadratic in X.
+/// Returns the shift sigma: a tenth of the smallest omega^2 (Rayleigh quotient) among displacements that are
+/// quadratic in X and satisfy the conditions.
 double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const MatX<double>& Q) {
   const Eigen::Index n = mesh.X.rows();
   double min_omega2 = std::numeric_limits<double>::infinity();
@@ -162,7 +163,8 @@ struct MeshProblem {
   void check_size() const;
 };
 
-/// Returns the lowest modes in mass-normalised coordinates, one a column, by increasing frequency.
+/// Returns an orthonormal basis of the span of the lowest modes, in mass-normalised coordinates, one vector
+/// in each column. diagonalised() finds the modes in this span.
 MatX<double> lowest_modes(const MeshProblem& problem, const MeshElasticity& elasticity,
                           const MatX<double>& Q) {
   const Eigen::Index n = elasticity.mass.size(), count = problem.count();
@@ -198,7 +200,7 @@ void MeshProblem::check_size() const {
                                 std::to_string(static_cast<long>(kMaxNumbers / 3)));
 }
 
-/// Modes over the coordinates of a mesh, one a column, by increasing frequency.
+/// Modes over the coordinates of a mesh, one in each column of d, by increasing frequency.
 struct MeshModes {
   MatX<double> d;
   VecX<double> omega2;
@@ -258,7 +260,7 @@ ModalBasis make_mesh_modes(const Part& part, const LocalSettings& settings) {
   const Eigen::Index available = root.size() - Q.cols();
   if (settings.modes > available)
     throw std::invalid_argument(problem.part_name + std::to_string(settings.modes) +
-                                " modes of a mesh that has " + std::to_string(available) +
+                                " modes are requested, but its mesh has only " + std::to_string(available) +
                                 "; expected no more");
   const MeshModes modes = diagonalised(elasticity, lowest_modes(problem, elasticity, Q));
 

@@ -9,7 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns the azimuth of (i, j) by equal steps around its square ring of half side `ring`.
+/// Returns the azimuth (rad) of lattice point (i, j) on the square ring of half side `ring`. Along the ring
+/// the azimuth grows by equal steps.
 double azimuth(int i, int j, int ring) {
   if (ring == 0) return 0;
   if (i == ring && std::abs(j) < ring) return kPi / 4 * j / ring;
@@ -19,7 +20,7 @@ double azimuth(int i, int j, int ring) {
   return kPi / 4 * j / ring;
 }
 
-/// Returns 0 for rounding errors of 0.
+/// Returns x, or 0 if x differs from 0 by rounding only.
 double exact(double x) {
   return std::abs(x) < 1e-15 ? 0.0 : x;
 }

@@ -36,7 +36,7 @@ struct Corners {
   std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
-/// Returns the material point in the direction g of the mesh pattern at the radius w.
+/// Returns the material point in the direction g of the mesh pattern with the radial coordinate w.
 struct Labels {
   const ShapeFace& shape;
   ShapeParameters a;
@@ -93,8 +93,8 @@ Corners ball_corners(const Labels& label, const Surface& surface, int m) {
 
 /// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
 /// triangle are directed from its first node to the second and third, and from the second to the third: along
-/// rings by increasing angle, else inwards. The Surface cuts the sides of the prisms along the same
-/// diagonals.
+/// rings by increasing angle, else inwards. A triangle swept to the next angle around the axis is a prism of
+/// three elements. The Surface cuts the sides of the prisms along the same diagonals.
 struct TubeSection {
   struct Node {
     int ring, step;  ///< n and the number of the point in the ring; ring 0 is the middle

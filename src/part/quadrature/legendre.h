@@ -1,5 +1,5 @@
-// Products P_i(x) P_j(y) P_k(z) of Legendre polynomials over a box with i + j + k <= degree, sorted by
-// degree.
+// Products P_i(x) P_j(y) P_k(z) of Legendre polynomials with i + j + k <= degree, sorted by i + j + k. The
+// coordinates x, y and z are scaled to [-1, 1] over a box.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ class LegendreProducts {
 
   const Eigen::AlignedBox3d& box() const { return box_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
-  /// Returns the values at points x (3 x n, m): n x size().
+  /// Returns the values of all products at points x (3 x n, m): n x size().
   MatX<double> values(const Eigen::Matrix3Xd& x) const;
   /// Returns the matrix E with d/dx_axis of all products = E times all products, 1/m.
   MatX<double> derivative(int axis) const;

@@ -81,7 +81,8 @@ class MassIntegrands {
     }
   }
 
-  /// L of Eq. (9) of all points in the body frame, and their accelerations at vdot = 0: three rows a point.
+  /// L of Eq. (9) of all points in the body frame, and their accelerations at vdot = 0: three rows for each
+  /// point.
   struct Kinematics {
     Eigen::MatrixXd L;
     Eigen::VectorXd acceleration;
@@ -142,7 +143,8 @@ ParameterValues<double> initial_values(const Part& part) {
   return all.expand<double>(q_s, zero);
 }
 
-/// Returns points in plane sections.
+/// Returns three points in each of the plane sections that the search chooses. extra: levels of refinement
+/// beyond those that suffice.
 PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integrands, int extra) {
   auto columns = [&](const std::vector<SliceNode>& nodes) {
     Columns line{{Column{}}, 0};

@@ -45,7 +45,8 @@ struct PlaneMoments {
     xy += mass * px * py;
     yy += mass * py * py;
   }
-  /// Returns three points that, with equal masses, have the centre and the second moments of the sums.
+  /// Returns three positions. Three equal masses there have the centre and the second moments of all masses
+  /// that were added.
   std::array<Eigen::Vector2d, 3> points() const {
     const double cx = x / m, cy = y / m;
     Eigen::Matrix2d spread;
@@ -103,8 +104,8 @@ class PowerPanel {
  public:
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
-  /// Nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near with
-  /// many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to t = e^-37,
+  /// Adds n nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near
+  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to t = e^-37,
   /// which is rounding relative to 1.
   void add_for_all_powers(int n) {
     const double reach = 37 / panel_.eps;
@@ -113,8 +114,8 @@ class PowerPanel {
       add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * reach * node.weight);
     }
   }
-  /// Nodes for a fixed exponent. The integrand consists of powers of t^(2/eps); with t = x^q and q a multiple
-  /// of eps, these powers are smooth in x.
+  /// Adds nodes for a fixed exponent: n nodes, or 2 n if eps is below 0.25. The integrand consists of powers
+  /// of t^(2/eps); with t = x^q and q a multiple of eps, these powers are smooth in x.
   void add_for_fixed_power(int n) {
     double reach = std::exp2(-panel_.eps / 2);
     if (panel_.eps < 0.25) {
@@ -148,8 +149,9 @@ class PowerPanel {
   std::vector<AngleNode>& nodes_;
 };
 
-/// Returns the nodes of panels: n in each, 2 n in a periodic one. dynamic_exponents: whether exponents are
-/// degrees of freedom, so that the powers in the integrand vary.
+/// Returns the nodes of panels: n in each panel, 2 n in a periodic panel and in a power panel of a small
+/// fixed exponent. dynamic_exponents: whether exponents are degrees of freedom, so that the powers in the
+/// integrand vary.
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool dynamic_exponents) {
   std::vector<AngleNode> nodes;
   for (const Panel& panel : panels) {
@@ -257,7 +259,8 @@ std::vector<QuadratureNode> depth_nodes(const RestShape& r, int n) {
 
 namespace {
 
-/// The nodes of a ring: undeformed positions e, and [e_u e_v e_w] there.
+/// The nodes of a ring: undeformed positions e of the rest map, and [e_u e_v e_w] there. The derivatives are
+/// by the variables of the rules along u, v and w.
 struct RingTangents {
   Eigen::Matrix3Xd e;
   std::vector<Mat3<double>> tangents;
@@ -278,7 +281,7 @@ struct RingTangents {
   }
 };
 
-/// Returns the material point of a ring at (X, Y) = (C_v^eps, S_v^eps), eps the exponent of the ring.
+/// Returns the material point of a ring at p = (C_v^eps, S_v^eps), where eps is the exponent of the ring.
 Material<double> on_ring(const AngleNode& u, const QuadratureNode& w, const Eigen::Vector2d& p,
                          double ring_exponent) {
   auto coordinate = [&](double x) {

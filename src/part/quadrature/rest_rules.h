@@ -30,12 +30,13 @@ struct RestShape {
                       ///< ring
 };
 
-// Nodes along one direction: n in each panel, 2 n in a periodic panel.
+// Nodes along one direction. n: number of nodes in a panel; a periodic panel has twice as many.
 
 /// A plane section at zeta = z / h, and its weight.
 struct SliceNode {
   double zeta, gap, weight;  ///< gap: 1 - |zeta|
 };
+/// Returns nodes along z. A panel with singular ends has 2 n nodes.
 std::vector<SliceNode> slice_nodes(const RestShape& shape, int n);
 /// Appends three points that represent the section; none if the section has no area.
 void add_slice(const RestShape& shape, const SliceNode& node, std::vector<RestPoint>& out);
@@ -47,7 +48,7 @@ struct AngleNode {
 };
 std::vector<AngleNode> profile_nodes(const RestShape& shape, int n);  ///< along u
 std::vector<AngleNode> ring_nodes(const RestShape& shape, int n);     ///< along v
-/// Along w; for a shell the surface alone.
+/// Along w; for a shell only w = 1.
 std::vector<QuadratureNode> depth_nodes(const RestShape& shape, int n);
 /// Appends the points of a ring: one for each node of v if shape.points_apart, else three points, or none if
 /// the ring has no mass.

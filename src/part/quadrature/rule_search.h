@@ -1,7 +1,7 @@
-// The search for a quadrature rule over the rest shape of a part. Along each direction the nodes are doubled
-// until no integral changes, and then thinned to as few nodes as give equal integrals. Both steps use
-// integrands at states spread over the ranges of the dynamic parameters, and at places, which are random
-// nodes of the other directions. A class Integrands defines the integrands:
+// The search for a quadrature rule over the rest shape of a part. Along each direction the number of nodes is
+// doubled until no integral changes. Then the rule is thinned: as many nodes are removed as the integrals
+// allow. Both steps use integrands at states spread over the ranges of the dynamic parameters, and at places,
+// which are random nodes of the other directions. A class Integrands defines the integrands:
 //   subject         "mass matrix", for messages
 //   kEach           number of integrands for each state
 //   kTolerance      relative change by doubling at which a rule has converged
@@ -35,16 +35,16 @@ inline int size_at(int level) {
 /// Random numbers by xorshift, equal on every machine.
 class Draw {
  public:
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double uniform() {
     seed_ ^= seed_ << 13;
     seed_ ^= seed_ >> 7;
     seed_ ^= seed_ << 17;
     return static_cast<double>(seed_ >> 11) * 0x1.0p-53;
   }
-  /// In [-1, 1).
+  /// Returns a number in [-1, 1).
   double symmetric() { return 2 * uniform() - 1; }
-  /// An index below n.
+  /// Returns an index below n.
   std::size_t below(std::size_t n) {
     return std::min(n - 1, static_cast<std::size_t>(uniform() * static_cast<double>(n)));
   }
@@ -59,7 +59,7 @@ struct Column {
   std::vector<Eigen::Index> node;  ///< number of the node of each point
   void end_node(Eigen::Index which) { node.resize(points.size(), which); }
 };
-/// Columns at several places.
+/// Columns at several places; n_nodes is the number of nodes along the direction.
 struct Columns {
   std::vector<Column> columns;
   Eigen::Index n_nodes = 0;
@@ -106,8 +106,9 @@ class StateRanges {
   std::vector<RangeOf> ranges_;
 };
 
-/// Returns the smallest level of refinement at which doubling changes no integral. columns(level) places the
-/// nodes. remaining: raised to the smallest change found, if no level suffices.
+/// Returns the smallest level of refinement at which doubling changes no integral by more than kTolerance.
+/// If there is none, returns the best level if its change is at most kRequired. Else returns the last level
+/// and raises `remaining` to the smallest change found. columns(level) places the nodes.
 template <class Integrands, class MakeColumns>
 int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
@@ -151,7 +152,8 @@ void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& 
   for (int n_states = 80;; n_states *= 2) {
     Eigen::Index rank = 0;
     factors = thin_rule(integrands.shares(line, n_states), &rank, Integrands::kThin);
-    // Stop when the integrands span the whole space of integrands, or when no node can be removed.
+    // Stop when further states would add no new integrand (the rank is far below the number of integrands),
+    // or when no node can be removed.
     if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
@@ -178,7 +180,7 @@ inline constexpr std::size_t kMaxPoints = 2'000'000;
 struct PlacedPoints {
   std::vector<RestPoint> points;
   int level = 0;         ///< level of refinement along the last direction
-  double remaining = 0;  ///< relative change by doubling that no level removed; 0 if the search converged
+  double remaining = 0;  ///< the value of refine(): relative change by doubling; 0 if a level suffices
 };
 
 inline void remove_massless(std::vector<RestPoint>& points) {
@@ -251,8 +253,8 @@ class RingSearch {
     if (thinned_) thin(integrands_, along_u(u_), u_);
   }
 
-  // Nodes of one direction at random places of the other directions. If the points of a ring do not move
-  // independently, a place has no node of v, and each column has whole rings.
+  // Return nodes of one direction at random places of the other directions. If the points of a ring do not
+  // move independently, a place has no node of v, and each column has whole rings.
 
   Columns along_v(const std::vector<AngleNode>& nodes) const {
     Columns line;

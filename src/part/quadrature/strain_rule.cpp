@@ -261,7 +261,8 @@ StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, doub
     std::ostringstream message;
     message << "part '" << part.name()
             << "': the quadrature of its strain energy does not converge over the ranges of "
-            << dynamic_names(part) << " (doubling the finest rule changes the energy by a relative amount of "
+            << dynamic_names(part)
+            << " (doubling the rule changes energy, force or stiffness by a relative amount of "
             << placed.remaining << "); freeze some of them, or narrow their limits (min, max)";
     throw std::invalid_argument(message.str());
   }

@@ -2,9 +2,9 @@
 // material points in the frame of the part. Rigid motion and changes of the global parameters could be
 // written in d as well; reference conditions W^T d = 0 remove this redundancy
 // (include/pliant/part/local/README.md). LocalDeformation is the interface of all choices of S; one call
-// handles a whole part:
-//   nodal_deformation.h   d at the nodes of a mesh
-//   modal_deformation.h   d = sum Phi_j q_j of global modes
+// handles a whole part. The choices are
+//   nodal_deformation.h   displacements d of the nodes of a mesh
+//   modal_deformation.h   amplitudes q_j of global modes Phi_j: d = sum Phi_j q_j
 // The displacement of a material point is d = sum weight_i d_i, where at_nodes() computes the nodal values
 // d_i from q_d.
 #pragma once
@@ -42,7 +42,7 @@ class LocalDeformation {
  public:
   virtual ~LocalDeformation() = default;
 
-  /// The mesh that pictures and contact show.
+  /// The mesh whose surface pictures show and contact detection uses.
   const LocalMesh& mesh() const { return mesh_; }
   /// Number of local coordinates.
   Eigen::Index n_d() const { return initial_.size(); }
@@ -55,7 +55,7 @@ class LocalDeformation {
   const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
-  /// Returns the name of a local coordinate, as in "d[17].x".
+  /// Returns the name of local coordinate number k, for example "d[17].x" or "mode[3]".
   virtual std::string coordinate_name(Eigen::Index k) const = 0;
   /// Returns the unit of a local coordinate.
   virtual const char* unit(Eigen::Index k) const = 0;
@@ -64,8 +64,8 @@ class LocalDeformation {
   /// Returns a description in words, as in "600 local, of 200 nodes".
   virtual std::string description() const = 0;
 
-  /// Returns the weights of a material point. The result is empty for a point inside a shell, where the local
-  /// deformation has no value.
+  /// Returns the weights of a material point over the nodes of at_nodes(). The result is empty for a point
+  /// inside a shell, where the local deformation has no value.
   virtual NodeWeights weights(const Part& part, const Material<double>& m) const = 0;
   /// Returns the values at the nodes of weights(): displacements (m) from local coordinates, or velocities
   /// (m/s) from their rates. buffer: storage that the result may refer to.
@@ -81,7 +81,7 @@ class LocalDeformation {
   /// Returns the oscillators if the elasticity is diagonal in the local coordinates, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
-  // The dynamics, one function a stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
+  // The dynamics, one function for each stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
   // workspace must come from workspace(), and LocalWorkspace::place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
@@ -104,10 +104,11 @@ class LocalDeformation {
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 
-  /// Computes A = M^-1 for the joints of the part: the changes of (v_r, d_dot at the points) by impulses g on
-  /// (v_r, the points). points: the attachment points of the joints.
+  /// Computes A = M^-1 for the joints of the part and stores it in the workspace. A maps impulses g on (v_r,
+  /// the points) to the changes of (v_r, d_dot at the points). points: the attachment points of the joints.
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
-  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause.
+  /// Adds to d_dot the changes of all local rates that impulses g on (v_r, the points) cause. compliance()
+  /// must have run on the workspace with these points.
   void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
                 Eigen::Ref<VecX<double>> d_dot) const;
   /// Returns M of rigid motion at the current positions: 6 x 6.
@@ -120,7 +121,8 @@ class LocalDeformation {
     double K = 0, D = 0;
   };
   virtual Bound stiffness_bound(const LocalWorkspace& work) const = 0;
-  /// Returns the inverse of the effective mass (1/kg) of a material point if only the local coordinates move.
+  /// Returns the inverse of the effective mass (1/kg) of a material point if only the local coordinates move;
+  /// for modes the largest value over all directions.
   virtual double mobility(const NodeWeights& at) const = 0;
 
  protected:
@@ -129,7 +131,7 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// compliance() and push_all() without a LocalResponse, by M^-1.
+  /// Implement compliance() and push_all() by M^-1, for a workspace without a LocalResponse.
   virtual MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                            LocalWorkspace& work) const = 0;
   virtual void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,

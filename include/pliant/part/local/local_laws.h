@@ -18,8 +18,8 @@ struct LocalLawInfo {
     const char* unit;
     const char* meaning;
     double min;
-    bool above;  ///< true: values must be > min; false: >= min
-    std::optional<double> fallback = {};
+    bool above;                           ///< true: values must be > min; false: >= min
+    std::optional<double> fallback = {};  ///< default value; without one a scene must give the number
     double max = std::numeric_limits<double>::infinity();  ///< largest allowed value
   };
   const char* name;
@@ -32,6 +32,7 @@ struct LocalLawInfo {
   bool quadratic = false;  ///< whether the energy is quadratic in d, as modes require
 };
 
+/// Returns all laws, in the order of `pliant list` and of the schema.
 const std::vector<LocalLawInfo>& all_local_laws();
 
 /// Returns the law of this name. Throws std::logic_error if there is none.

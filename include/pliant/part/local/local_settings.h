@@ -20,6 +20,7 @@ namespace pliant {
 /// A law of elasticity that can be evaluated on any mesh. local_laws.h lists the laws that scenes know.
 struct LocalLaw {
   using MakeEnergy = std::function<std::unique_ptr<NodalEnergy>(const LocalMesh&)>;
+  /// on_mesh: makes the energy of a mesh. law_name: for messages. of_solid: the value of `linear`.
   template <class F, class = std::enable_if_t<std::is_constructible_v<MakeEnergy, F>>>
   LocalLaw(F on_mesh, std::string law_name = "of the user", std::optional<Elasticity> of_solid = {})
       : make_energy(std::move(on_mesh)), name(std::move(law_name)), linear(of_solid) {}
@@ -30,7 +31,7 @@ struct LocalLaw {
                                      ///< polynomials need only these, no mesh
 };
 
-/// A local deformation that cannot be made.
+/// The error that a local deformation cannot be made.
 struct LocalFault : std::invalid_argument {
   LocalFault(const std::string& what, int of_law = -1) : std::invalid_argument(what), law(of_law) {}
   int law;  ///< number of the faulty law in LocalSettings::energies; -1 if no law is at fault
@@ -59,8 +60,8 @@ struct LocalSettings {
 /// The energies of the laws of a part on a mesh.
 struct MeshEnergies {
   std::vector<std::unique_ptr<NodalEnergy>> all;
-  VecX<double>
-      own_inertia;  ///< inertia of the coordinates that one of the energies adds to those of the nodes
+  /// Inertia of the coordinates that one of the energies adds to those of the nodes; empty if none does.
+  VecX<double> own_inertia;
 };
 /// Makes the energies. Throws LocalFault if a law cannot be evaluated on the mesh, or if a second law adds
 /// coordinates.

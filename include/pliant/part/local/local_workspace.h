@@ -36,7 +36,7 @@ struct LocalWorkspace {
   std::bitset<kMaxVelocities> held;
 
   // Stage forces().
-  double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W
+  double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W, at most 0
   VecX<double> force;            ///< forces on the local coordinates
 
   // Stage accelerations().

@@ -25,16 +25,17 @@ struct ModalBasis {
   std::vector<Material<double>> points;
   Nodes points_at_rest;  ///< body frame, m
   MatX<double> project;  ///< N x points
-  LocalMesh mesh;        ///< the mesh that pictures and contact show
+  LocalMesh mesh;        ///< the mesh whose surface pictures show and contact detection uses
   MatX<double> shown;    ///< phi at the nodes of `mesh`: nodes x N
   std::string made_of;   ///< for messages, as in "polynomials of degree 4"
 };
 
 /// Makes displacement polynomials of settings.degree over the body of a solid, with exact integrals, and
-/// diagonalises its linear elasticity. Throws std::invalid_argument for a shell, and for other laws.
+/// diagonalises its linear elasticity. Throws std::invalid_argument for a shell, for other laws, and for a
+/// degree outside 1 to 10 or too high for the part.
 ModalBasis make_polynomials(const Part& part, const LocalSettings& settings);
 /// Makes the lowest settings.modes modes of a mesh under W^T d = 0. Throws std::invalid_argument for laws
-/// that are not quadratic in d.
+/// that are not quadratic in d, for no law, and for more modes than the mesh has or than fit in memory.
 ModalBasis make_mesh_modes(const Part& part, const LocalSettings& settings);
 
 }  // namespace pliant

@@ -1,11 +1,11 @@
 // Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
 // modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so
-// the reference conditions hold for every q_d. With p_a = s_a + d_a of the spectral nodes (modal_basis.h) and
-// G_a = [e_a I, -[p_a]x, J_a],
+// the reference conditions hold for every q_d. With the coefficients p_a = s_a + d_a, J_a and e_a of p, of J
+// and of the constant 1 at the spectral nodes a (modal_basis.h), and with G_a = [e_a I, -[p_a]x, J_a],
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
-// The reference shape s is not in the span of the phi; integrals of s alone are those of the part
-// (part/inertia.h).
+// f_r and f_d are the forces on (c, theta, q_s) and on q_d. The reference shape s is not in the span of the
+// fields phi; integrals of s alone are those of the part (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>
@@ -49,6 +49,8 @@ struct ModalWorkspace final : LocalWorkspace {
 
 class ModalDeformation final : public LocalDeformation {
  public:
+  /// Uses the damping and the initial values of the settings. Throws std::invalid_argument if the initial
+  /// displacements are larger than the part.
   ModalDeformation(const Part& part, const LocalSettings& settings, ModalBasis basis);
 
   const ModalBasis& basis() const { return basis_; }

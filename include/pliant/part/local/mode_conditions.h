@@ -14,8 +14,9 @@ MatX<double> rest_frame(const Part& part, const ModalBasis& basis);
 /// span of the others is below this fraction of its length is ignored.
 MatX<double> orthonormal_basis(MatX<double> A, double dependent);
 
-/// Computes B and omega2 of a basis: all modes of the stiffness K (3N x 3N, N/m) under W^T d = 0. The fields
-/// of the basis must have equal masses and span the constant and X.
+/// Computes B and omega2 of a basis: all modes of the stiffness K under W^T d = 0. K (3N x 3N, N/m) is over
+/// the coefficients d_a of the N fields of the basis: all x, then y, then z. The fields must have equal
+/// masses and span the constant and X.
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis);
 
 }  // namespace pliant

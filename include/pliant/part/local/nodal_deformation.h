@@ -8,8 +8,9 @@
 //   m y = F - W kappa
 //   K^T a_r = sum W^T y + 2 sum Wdot^T d_dot + sum Wddot^T d
 //   d_ddot = y - G a_r
-// with G = [I, -[p]x, J], p = s + d and the multipliers kappa of the conditions. No matrix of mesh size is
-// formed. nodal_dynamics-inl.h has the stages.
+// with G = [I, -[p]x, J], p = s + d and the multipliers kappa of the conditions. The sums are over nodes, m
+// is the mass of a node, and the columns of P for c and theta are zero. No matrix of mesh size is formed.
+// nodal_dynamics-inl.h has the stages.
 #pragma once
 
 #include <optional>
@@ -40,16 +41,17 @@ struct NodalWorkspace final : LocalWorkspace {
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // Stage forces(), N.
   VecX<double> x_dot;     ///< rates of x in the body frame, for damping
-  VecX<double> f, f_d;    ///< forces of energies of positions; of energies of d, which act on d alone
+  VecX<double> f, f_d;    ///< forces of the energies that depend on p; F_d, of those that depend on d
   VecMax<double> of_d;    ///< sum G^T F_d
   VecMax<double> of_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
   VecMax<double> kappa;
-  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one a column.
+  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one in each column.
   MatX<double> kappa_of, a_of;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
-  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() saves while it finds the frame
+  /// Positions and velocities that project_frames() (room project) saves while it finds the frame.
+  Nodes p_kept, u_kept;
 
   /// Returns J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
@@ -76,7 +78,8 @@ struct NodalWorkspace final : LocalWorkspace {
 
 class NodalDeformation final : public LocalDeformation {
  public:
-  /// Throws std::invalid_argument if the mesh or an energy cannot be made.
+  /// Throws std::invalid_argument if the mesh or an energy cannot be made, or if the initial displacements
+  /// are larger than the part.
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
@@ -133,8 +136,8 @@ class NodalDeformation final : public LocalDeformation {
   /// same array.
   void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
                             const double* from, double* to) const;
-  /// Transforms positions and velocities of all nodes to a frame that is shifted and turned relative to the
-  /// current one: p <- turn^T (p - shift), u <- turn^T u.
+  /// Transforms positions p and velocities u of all nodes from the current frame to a shifted and turned one:
+  /// p <- turn^T (p - shift), u <- turn^T u. shift (m) and turn have components in the current frame.
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:

@@ -74,7 +74,7 @@ inline void place_nodes(const double* mass, Eigen::Index n, NodalWorkspace& w) {
 
 /// The matrices of the reference conditions while they are assembled.
 struct ReferenceConditions {
-  MatMax<double> K, P;  ///< K = H - P^T, first H alone; P = d(W^T d)/dq_s
+  MatMax<double> K, P;  ///< K = H - P^T, but H until P is complete; P = d(W^T d)/dq_s
 };
 
 /// Sums over nodes of derivatives of J and Jdot q_s_dot along one parameter q_j.

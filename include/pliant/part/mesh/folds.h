@@ -7,11 +7,12 @@
 
 namespace pliant {
 
-/// Returns the smallest determinant of the gradient of the chain over a sample of the surface. It is 1 where
-/// the chain keeps volume, 0 at the tip of a full taper, and negative where the chain folds the body over.
+/// Returns the smallest determinant of the gradient of the chain over a sample of the surface; 1 for an empty
+/// chain. The determinant is 1 where the chain keeps volume, 0 at the tip of a full taper, and negative where
+/// the chain folds the body over.
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
-/// Returns whether a piece of the surface is turned inside out.
+/// Returns whether a piece of the surface is turned inside out: min_volume_ratio() is below -1e-12.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
 /// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the

@@ -8,8 +8,8 @@
 namespace pliant {
 
 /// Returns u and v (rad) at the corners of the triangles of a shell. Angles of a triangle that crosses the
-/// seam continue beyond pi. A triangle with a corner at a pole becomes two, so that the triangles cover the
-/// rectangle once. Throws std::invalid_argument if a triangle has no area on the rectangle.
+/// seam continue beyond pi. A triangle with a corner at a pole becomes two triangles, so that all triangles
+/// cover the rectangle once. Throws std::invalid_argument if a triangle has no area on the rectangle.
 ParameterMesh parameter_mesh(const LocalMesh& mesh);
 
 }  // namespace pliant

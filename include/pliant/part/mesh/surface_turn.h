@@ -11,11 +11,12 @@ namespace pliant {
 inline constexpr double kMostLinearTurn = 0.3;
 
 /// Returns whether dynamic parameters change the shape while an elastic law of the part is linear in d and
-/// depends on the direction of d.
+/// depends on the direction of d. The elasticity of modes is always such a law.
 bool linear_on_moving_shape(const Part& part);
 
 /// Returns the largest angle, rad, by which the reference shape at q_s rotates a triangle of the surface of
-/// the mesh relative to rest, in the frame of the part and without d.
+/// the mesh relative to rest, in the frame of the part and without d. Triangles without area are ignored. The
+/// part must have local deformation.
 double largest_surface_turn(const Part& part, const VecMax<double>& q_s);
 
 }  // namespace pliant
