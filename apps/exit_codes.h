@@ -13,8 +13,8 @@ enum ExitCode {
   kFileSystem = 7,
   kResources = 8,
   kWouldOverwrite = 9,
-  kDoesNotFit = 10,  // the recording does not match the scene or the program
-  kSignal = 128,     // plus the number of the signal
+  kRecordingMismatch = 10,  // the recording does not match the scene or the program
+  kSignal = 128,            // plus the number of the signal
 };
 
 inline constexpr const char* kExitCodesHelp =

@@ -81,7 +81,7 @@ int reporting_failures(const std::function<int()>& task) {
   } catch (const pliant::OutputRefused& error) {
     return report(error.what(), kWouldOverwrite);
   } catch (const pliant::RecordingMismatch& error) {
-    return report(error.what(), kDoesNotFit);
+    return report(error.what(), kRecordingMismatch);
   } catch (const pliant::UnsatisfiableModel& error) {
     return report(error.what(), kUnsatisfiable);
   } catch (const pliant::NumericalFailure& error) {

@@ -79,16 +79,16 @@ void print_part(const pliant::PartModel& model) {
     const pliant::StrainPoints& strained = part.continuum()->points();
     std::cout << "  elasticity: " << law.law << ", E " << law.E << " Pa, nu " << law.nu_P
               << "; strain points: " << strained.n_points << ", rule \"" << strained.rule << "\"";
-    if (strained.settled > 0)
-      std::cout << " with a relative error of about " << pliant::rounded_text(strained.settled);
+    if (strained.relative_error > 0)
+      std::cout << " with a relative error of about " << pliant::rounded_text(strained.relative_error);
     std::cout << "\n";
   }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
     std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
               << points.level
-              << (points.unsettled > 0
-                      ? " with a relative error of about " + pliant::rounded_text(points.unsettled)
+              << (points.relative_error > 0
+                      ? " with a relative error of about " + pliant::rounded_text(points.relative_error)
                       : "")
               << "\n";
 }

@@ -51,9 +51,9 @@ void apply_options(const RunCommand& command, const std::optional<pliant::RunRec
                    pliant::Scene& scene) {
   if (previous) {
     scene.end = previous->end;
-    if (previous->tolerance == 0) scene.step = previous->asked_step;
+    if (previous->tolerance == 0) scene.step = previous->requested_step;
     scene.tolerance = previous->tolerance;
-    scene.integrator = previous->asked_integrator;
+    scene.integrator = previous->requested_integrator;
     scene.frame_rate = previous->frame_rate;
     scene.width = previous->width;
     scene.height = previous->height;

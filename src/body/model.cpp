@@ -219,9 +219,9 @@ void Model::share_joint_points() {
       PartModel& m = parts_[static_cast<std::size_t>(ref.part)];
       const auto port = static_cast<std::size_t>(ref.port);
       if (m.local == nullptr || m.node_weights[port].node.empty()) continue;
-      const auto same = std::find(m.shared.begin(), m.shared.end(), m.node_weights[port]);
-      m.port_place[port] = static_cast<int>(same - m.shared.begin());
-      if (same == m.shared.end()) m.shared.push_back(m.node_weights[port]);
+      const auto same = std::find(m.joint_points.begin(), m.joint_points.end(), m.node_weights[port]);
+      m.port_place[port] = static_cast<int>(same - m.joint_points.begin());
+      if (same == m.joint_points.end()) m.joint_points.push_back(m.node_weights[port]);
     }
 }
 
@@ -260,7 +260,7 @@ Model::SidesOfParts Model::number_joints() {
   SidesOfParts sides_of(parts_.size());
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointModel& joint = joints_[j];
-    int& number = island_of[static_cast<std::size_t>(joined.leader(joint.sides.front().part))];
+    int& number = island_of[static_cast<std::size_t>(joined.root(joint.sides.front().part))];
     if (number < 0) {
       number = static_cast<int>(islands_.size());
       islands_.emplace_back();
@@ -416,11 +416,11 @@ State Model::initial_state() const {
     state.v.segment(m.v0 + 6 + m.n_s, m.n_d()) = m.local->initial_rate();
     displace_frame(m, state);
   }
-  note_limits(state);
+  record_limits(state);
   return state;
 }
 
-void Model::note_limits(State& state) const {
+void Model::record_limits(State& state) const {
   for (const PartModel& m : parts_)
     for (int k = 0; k < m.n_s; ++k) {
       const Range range = m.limits[static_cast<std::size_t>(k)];

@@ -45,7 +45,7 @@ constexpr double kNearPole = 0.2;
 constexpr int kMaxStencilHalvings = 60;
 
 /// Nine places around a centre; the first coordinate of Chart changes fastest. A place is the argument of
-/// ShapeFace::mesh_label(): a direction, or the pair of angles of a torus.
+/// ShapeInterface::mesh_label(): a direction, or the pair of angles of a torus.
 using Stencil = std::array<Vec3<double>, 9>;
 
 /// Two coordinates for the places around a sample point. On a ball pattern they are latitude and longitude,

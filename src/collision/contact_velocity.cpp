@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-double ContactFinder::thin(const Contact& contact) const {
+double ContactFinder::max_resolved_depth(const Contact& contact) const {
   double thickness = std::numeric_limits<double>::infinity();
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) thickness = std::min(thickness, surfaces_[at(side->part)]->thickness());
@@ -40,7 +40,7 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     }
     return v.head<3>() + R * p_dot;
   };
-  return of(contact.a) - of(contact.b) - contact.carried;
+  return of(contact.a) - of(contact.b) - contact.prescribed_velocity;
 }
 
 }  // namespace pliant

@@ -29,7 +29,7 @@ constexpr double kMergeDistance = 0.03;
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 /// Points nearer to a surface than this, in sizes of the part, are on it.
 constexpr double kFlush = 1e-4;
-/// Largest gap over an obstacle that least_gap() returns, in sizes of the part.
+/// Largest gap over an obstacle that min_gap() returns, in sizes of the part.
 constexpr double kMaxReportedGap = 0.1;
 /// Accuracy of the distance to the surface along the thin axis of a part, in thicknesses of the part.
 constexpr double kBisectionTolerance = 1e-12;
@@ -157,7 +157,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
     contact.x = placed.c + placed.R * low.p;
     contact.normal = normal;
     contact.gap = low.height;
-    contact.carried = now.carried;
+    contact.prescribed_velocity = now.prescribed_velocity;
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
@@ -221,7 +221,7 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
     if (!std::isfinite(gap) || !contact.normal.allFinite() || !(contact.normal.norm() > 0.5)) return;
     contact.a = {a, low.material};
     contact.b = {b, part_b.label(field.into_b(low.p), values_b)};
-    contact.carried = over.frame_velocity(contact.x) - on.frame_velocity(contact.x);
+    contact.prescribed_velocity = over.frame_velocity(contact.x) - on.frame_velocity(contact.x);
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
@@ -285,7 +285,7 @@ Contact ContactFinder::contact_at(const Vec3<double>& x, const Vec3<double>& nor
   contact.gap = gap;
   contact.a = {a, label(a, one)};
   contact.b = {b, label(b, other)};
-  contact.carried = other.frame_velocity(x) - one.frame_velocity(x);
+  contact.prescribed_velocity = other.frame_velocity(x) - one.frame_velocity(x);
   contact.friction = rule.friction;
   contact.restitution = rule.restitution;
   return contact;
@@ -352,7 +352,7 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
-    contact.carried = -contact.carried;
+    contact.prescribed_velocity = -contact.prescribed_velocity;
     auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
       return at_one_point ||
              ((other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kMergeNormal);
@@ -419,7 +419,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
   if (!has_pairs_) return found;
   find_near_pairs(max_gap, marked);
   for (const auto& [i, j] : s.pairs) {
-    if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
+    if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
     const ContactRule rule = rules_.of_parts(i, j);
     if (rule.touch) find_on_pair(i, j, rule, max_gap, found);
   }
@@ -433,7 +433,7 @@ bool ContactFinder::precedes(const Contact& one, const Contact& other) {
   return place(one) < place(other);
 }
 
-double ContactFinder::least_gap(const State& state, double t, const Contact& contact, double max_gap) const {
+double ContactFinder::min_gap(const State& state, double t, const Contact& contact, double max_gap) const {
   std::vector<Contact> found;
   place(state, t, contact.a.part);
   if (contact.obstacle >= 0) {

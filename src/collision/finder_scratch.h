@@ -37,7 +37,7 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::Matrix3Xd> points;  ///< sample points of parts with dynamic parameters, body frame
   struct PlaneNow {
     bool acts;
-    Vec3<double> point, carried;
+    Vec3<double> point, prescribed_velocity;
   };
   std::vector<PlaneNow> planes;  ///< planes at the time of the search; carried: velocity, m/s, world
   MeshSearch mesh_search;

@@ -50,9 +50,9 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   ball = {scratch_->parts[at(i)].c,    Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
           scratch_->parts[at(i)].reach};
   if (m.motion != nullptr) {
-    const TimeVector::Passage passage = m.motion->over(t, h, ball.reach);
-    ball.c_dot = passage.rate;
-    ball.speed = passage.beside;
+    const TimeVector::MeanRate mean = m.motion->over(t, h, ball.reach);
+    ball.c_dot = mean.rate;
+    ball.speed = mean.max_deviation;
   }
   double spare = 0;
   if (m.q0 >= 0) {
@@ -142,7 +142,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   const auto& planes = model_->body().contact.planes;
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (!(planes[k].acts_before(t) || planes[k].acts_before(t + h))) continue;
-    const double highest = planes[k].highest(t, h), beside = planes[k].point.over(t, h).beside;
+    const double highest = planes[k].highest(t, h), max_deviation = planes[k].point.over(t, h).max_deviation;
     for (const int i : smooth_parts_) {
       const Scratch::Ball& ball = s.balls[at(i)];
       if (sleeps(state, i) && planes[k].point.is_constant()) continue;
@@ -152,7 +152,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
       near.empty = false;
       // A half space has no thickness to pass through. But a spinning part may turn its other end down, and a
       // plane may oscillate.
-      near.limit_travel(h * (ball.speed + beside), h * ball.speed_change,
+      near.limit_travel(h * (ball.speed + max_deviation), h * ball.speed_change,
                         kMaxTurnOverPlane * s.parts[at(i)].reach, h, done);
     }
   }
@@ -164,13 +164,13 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
       const Scratch::Ball& ball = s.balls[at(i)];
       const double travel = h * (ball.c_dot.norm() + ball.speed),
                    change = h * (ball.c_dot_change.norm() + ball.speed_change),
-                   thin = kMaxTravelShare * surfaces_[at(i)]->thickness();
-      const bool changes = near.empty || travel + change > thin;
+                   allowed_travel = kMaxTravelShare * surfaces_[at(i)]->thickness();
+      const bool changes = near.empty || travel + change > allowed_travel;
       if (changes && (!on_obstacles_[at(i) * obstacles.size() + k].touch ||
-                      !obstacles_[k].comes_near(ball.c, ball.reach)))
+                      !obstacles_[k].is_within(ball.c, ball.reach)))
         continue;
       near.empty = false;
-      near.limit_travel(travel, change, thin, h, done);
+      near.limit_travel(travel, change, allowed_travel, h, done);
     }
   }
   if (!has_pairs_) return near;
@@ -187,14 +187,14 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   s.tree.near_pairs(0, s.pairs);
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_parts_[at(one)], j = smooth_parts_[at(other)];
-    if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
+    if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
     if (!rules_.of_parts(i, j).touch) continue;
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
-    const double thin =
+    const double allowed_travel =
         kMaxTravelShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
-    double max_travel = thin;
+    double max_travel = allowed_travel;
     const double change = h * ((a.c_dot_change - b.c_dot_change).norm() + a.speed_change + b.speed_change);
     double travel = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed), turning = 0;
     if (travel + change > max_travel) {
@@ -211,7 +211,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
     }
     // The limit max_travel includes the free distance between the parts. The tolerance is a share of the
     // thickness of the thinner part alone.
-    const double tolerated = max_travel + (kToleratedTravel - 1) * thin, whole = travel + change + turning;
+    const double tolerated = max_travel + (kToleratedTravel - 1) * allowed_travel,
+                 whole = travel + change + turning;
     near.limit_travel(travel, change + turning, done ? tolerated / kToleratedTravel : max_travel, h, done);
     near.spare = std::min(near.spare, 0.5 * (tolerated - std::min(whole, max_travel)));
   }

@@ -44,10 +44,10 @@ void Integrator::project(StepContext& step) {
   if (scale_ == nullptr) return;
   for (std::size_t j = 0; j < joints_before_.size(); ++j)
     if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
-      return note_error(closing_error(step.model().body().stabilization.rate, state.h, step.t) /
-                        scale_->tolerance());
+      return record_error(closing_error(step.model().body().stabilization.rate, state.h, step.t) /
+                          scale_->tolerance());
   unprojected_ -= state.q;
-  note_error(scale_->norm(unprojected_));
+  record_error(scale_->norm(unprojected_));
 }
 
 const std::vector<IntegratorInfo>& all_integrators() {

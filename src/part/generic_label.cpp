@@ -1,17 +1,17 @@
-// Material points and gauge gradients of shapes that have no label function (shape_face.h).
+// Material points and gauge gradients of shapes that have no label function (shape_interface.h).
 #include <cmath>
 #include <stdexcept>
 
 #include <Eigen/LU>
 
-#include <pliant/part/shape_face.h>
+#include <pliant/part/shape_interface.h>
 
 namespace pliant {
 
 namespace {
 
 /// Writes e and returns [e_u e_v e_w], both at uvw = (u, v, w).
-Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeParameters a,
+Mat3<double> tangents_at(const ShapeInterface& shape, const Vec3<double>& uvw, ShapeParameters a,
                          Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);
   Mat3<double> E;
@@ -27,7 +27,7 @@ constexpr double kOffPole = 1e-7;
 
 }  // namespace
 
-Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a) {
+Material<double> generic_label(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a) {
   const double size = x.norm();
   if (size == 0) return material_from(0, 1, 1, 0, 0);
   Material<double> guess = material_towards(x);
@@ -55,7 +55,7 @@ Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, Sh
   return material_at(uvw[0], uvw[1], uvw[2]);
 }
 
-Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a) {
+Vec3<double> generic_gauge_gradient(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a) {
   const MaterialAngles at = angles(generic_label(shape, x, a));
   const double pole = kPi / 2 - kOffPole;
   Vec3<double> e;

@@ -19,7 +19,7 @@ Parameter make_parameter(std::string name, const ParameterSpec& spec) {
 }
 }  // namespace
 
-Parameters::Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& links)
+Parameters::Parameters(const ShapeInterface& shape, const std::vector<LinkInfo>& links)
     : links_(links), n_shape_(shape.n_parameters()) {
   for (int i = 0; i < n_shape_; ++i)
     all_.push_back(make_parameter(shape.parameters()[i].name, shape.parameters()[i]));

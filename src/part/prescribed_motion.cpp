@@ -21,13 +21,13 @@ MovingFrame PrescribedMotion::at(double t) const {
   return frame;
 }
 
-TimeVector::Passage PrescribedMotion::over(double t, double h, double reach) const {
-  TimeVector::Passage passage = position.over(t, h);
+TimeVector::MeanRate PrescribedMotion::over(double t, double h, double reach) const {
+  TimeVector::MeanRate mean = position.over(t, h);
   double angular_speed = 0;
   for (const double share : kMoments)
     angular_speed = std::max(angular_speed, std::abs(angle.at(t + share * h).d));
-  passage.beside += reach * angular_speed;
-  return passage;
+  mean.max_deviation += reach * angular_speed;
+  return mean;
 }
 
 Eigen::Quaterniond PrescribedMotion::orientation_at(double t) const {

@@ -13,9 +13,9 @@ namespace pliant {
 namespace {
 
 template <class... Shapes>
-std::vector<std::unique_ptr<ShapeFace>> faces_of(std::tuple<Shapes...>*) {
-  std::vector<std::unique_ptr<ShapeFace>> all;
-  (all.push_back(std::make_unique<ShapeFaceOf<Shapes>>()), ...);
+std::vector<std::unique_ptr<ShapeInterface>> faces_of(std::tuple<Shapes...>*) {
+  std::vector<std::unique_ptr<ShapeInterface>> all;
+  (all.push_back(std::make_unique<ShapeInterfaceOf<Shapes>>()), ...);
   return all;
 }
 
@@ -44,8 +44,8 @@ std::unique_ptr<Part> make_shape(const std::string& shape, const std::string& na
 
 }  // namespace
 
-const std::vector<std::unique_ptr<ShapeFace>>& all_shapes() {
-  static const std::vector<std::unique_ptr<ShapeFace>> all = faces_of(static_cast<AllShapes*>(nullptr));
+const std::vector<std::unique_ptr<ShapeInterface>>& all_shapes() {
+  static const std::vector<std::unique_ptr<ShapeInterface>> all = faces_of(static_cast<AllShapes*>(nullptr));
   return all;
 }
 

@@ -129,7 +129,7 @@ TEST_CASE("a motion that no impulse can stop is reported, and stays bounded", "[
   dynamics.evaluate_masses(state.q, state.v, {0}, work);
   std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
   REQUIRE(contacts.size() == 2);
-  for (Contact& contact : contacts) contact.carried = 0.1 * contact.normal;
+  for (Contact& contact : contacts) contact.prescribed_velocity = 0.1 * contact.normal;
   ContactProblem problem(model, state, work, contacts);
   const ContactSolution solution = problem.solve(0);
   CHECK(solution.fallbacks == 1);

@@ -342,7 +342,7 @@ TEST_CASE("a mesh merges equal vertices, and finds nearest points and the triang
         CHECK((inner - at).norm() > (nearest - at).norm() - 1e-12);
       }
     }
-    CHECK(obstacle.comes_near(at, reach) == (min_distance <= reach));
+    CHECK(obstacle.is_within(at, reach) == (min_distance <= reach));
     const Eigen::AlignedBox3d box((at.array() - reach).matrix(), (at.array() + reach).matrix());
     obstacle.query(box, found);
     std::vector<int> all;

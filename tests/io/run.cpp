@@ -549,7 +549,7 @@ TEST_CASE("run.json reports the methods used and the quantities that were skippe
   CHECK(record.status == RunRecord::Status::complete);
   CHECK(record.steps == 34);
   CHECK(record.step == 0.335 / 34);
-  CHECK(record.asked_step == 0.01);
+  CHECK(record.requested_step == 0.01);
   CHECK(record.time == 0.335 / 34 * 34);
   CHECK(record.notes.size() == 1);
   CHECK(record.step_counters.evaluations == 4 * 34);

@@ -127,7 +127,7 @@ TEST_CASE("the strain energy is the integral of the law over the rest body", "[c
     CAPTURE(test::describe(body.shape, body.chain), part->continuum()->points().n_points);
     const VecMax<double> q = near_rest(draws, *part, 0.2);
     const double expected = dense_energy(*part, NeoHookean(kMaterial), q, shape == "supertoroid");
-    CHECK(part->continuum()->energy(*part, q) == Approx(expected).epsilon(20 * kStrainSettled));
+    CHECK(part->continuum()->energy(*part, q) == Approx(expected).epsilon(20 * kStrainTolerance));
   }
 }
 
@@ -271,7 +271,7 @@ TEST_CASE("a closed spherical shell that breathes has the exact frequency", "[co
   part->elasticity({"st_venant_kirchhoff_membrane", kYoung, kPoisson, thickness});
   part->prepare();
   CHECK(omega2(*part)[0] * r * r * (density / thickness) * (1 - kPoisson) / kYoung ==
-        Approx(2).epsilon(kStrainSettled));
+        Approx(2).epsilon(kStrainTolerance));
 }
 
 TEST_CASE("shells: force and stiffness are derivatives, and rotation causes no strain", "[continuum][long]") {
@@ -299,7 +299,7 @@ TEST_CASE("shells: force and stiffness are derivatives, and rotation causes no s
   const double there = part->continuum()->energy(*part, Eigen::Vector2d(0.7, 0)),
                turned = part->continuum()->energy(*part, Eigen::Vector2d(0.7, 1.1));
   CHECK(there > 0);
-  CHECK(turned == Approx(there).epsilon(10 * kStrainSettled));
+  CHECK(turned == Approx(there).epsilon(10 * kStrainTolerance));
 }
 
 TEST_CASE("elasticity that does not fit a part is refused by name", "[continuum][long]") {

@@ -328,17 +328,17 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
   CHECK_NOTHROW(part->prepare());
   // The part folds if the curvature times the half width exceeds one: angle a1 / a3 = 1.
   auto at = [](double a1, double angle) { return VecMax<double>(Eigen::Vector2d(a1, angle)); };
-  CHECK_FALSE(part->folded(at(1, 0.99)));
-  CHECK(part->folded(at(1, 1.01)));
-  CHECK(part->folded(at(1, -1.01)));
-  CHECK_FALSE(part->folded(at(0.5, 1.9)));
-  CHECK(part->folded(at(0.5, 2.1)));
+  CHECK_FALSE(part->is_inverted(at(1, 0.99)));
+  CHECK(part->is_inverted(at(1, 1.01)));
+  CHECK(part->is_inverted(at(1, -1.01)));
+  CHECK_FALSE(part->is_inverted(at(0.5, 1.9)));
+  CHECK(part->is_inverted(at(0.5, 2.1)));
   const std::unique_ptr<Part> given = make_part("given", "cylinder", {"bend"}, 1000);
   given->rest({{"bend.angle", 1.5}}).inertia(1, Mat3<double>::Identity());
   CHECK_THROWS_WITH(given->prepare(), test::has_text("its rest shape folds over"));
   const std::unique_ptr<Part> tip = make_part("tip", "cylinder", {"taper"}, 1000);
   tip->make_dynamic({"taper.tx", "taper.ty"});
-  CHECK_FALSE(tip->folded(at(-1, 1)));
+  CHECK_FALSE(tip->is_inverted(at(-1, 1)));
 }
 
 namespace {

@@ -422,7 +422,7 @@ TEST_CASE(
       INFO(test::describe(c.shape, c.chain)
            << " " << part->parameters().n_dynamic() << (shell ? " shell " : " solid ")
            << part->mass_points().rule << " " << part->mass_points().n_points);
-      CHECK(part->mass_points().unsettled == 0);
+      CHECK(part->mass_points().relative_error == 0);
       CHECK(doubling_error(*part, 6) <= 1e-12);
     }
 }

@@ -54,7 +54,7 @@ RandomState make_state(Draws& draws, const Part& part, F&& value) {
 inline RandomState draw_state(Draws& draws, const Part& part) {
   for (int trial = 0; trial < 10000; ++trial) {
     RandomState state = make_state(draws, part, draw_value);
-    if (!part.folded(state.q_s)) return state;
+    if (!part.is_inverted(state.q_s)) return state;
   }
   throw std::runtime_error("no state without folds found");
 }

@@ -7,7 +7,7 @@
 #include <pliant/math/scalar/taylor2.h>
 #include <pliant/part/part.h>
 #include <pliant/part/registry.h>
-#include <pliant/part/shape_face.h>
+#include <pliant/part/shape_interface.h>
 #include <pliant/shape/all_shapes.h>
 
 #include "differences.h"
@@ -242,7 +242,7 @@ TEMPLATE_LIST_TEST_CASE("gauge and label invert e", "[shape]", AllShapes) {
     for (int trial = 0; trial < 4; ++trial) {
       const ShapeVec<Shape, double> a =
           with_exponents<Shape>(trial == 0 ? defaults<Shape>() : draw_parameters<Shape>(draws), eps);
-      const ShapeFaceOf<Shape> face;
+      const ShapeInterfaceOf<Shape> face;
       const double size = size_of<Shape>(a);
       for (const Material<double>& m : test_points<Shape>(draws)) {
         const Vec3<double> x = Shape::template e<double>(m, a);
@@ -274,7 +274,7 @@ TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with finite differences", "
   int n_smooth = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const ShapeVec<Shape, double> a = draw_parameters<Shape>(draws);
-    const ShapeFaceOf<Shape> face;
+    const ShapeInterfaceOf<Shape> face;
     const double size = size_of<Shape>(a);
     const Vec3<double> x = draws.vector(0.8 * size);
     const ShapeVec<Shape, Long> al = a.template cast<Long>();
@@ -305,7 +305,7 @@ TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and
                         AllShapes) {
   using Shape = TestType;
   const ShapeVec<Shape, double> a = defaults<Shape>();
-  const ShapeFaceOf<Shape> face;
+  const ShapeInterfaceOf<Shape> face;
   const double size = size_of<Shape>(a);
   for (const double z : {0.0, 1e-200, 0.3, 1.0, -1.0})
     for (const Vec3<double>& x : {Vec3<double>(0, 0, z * size), Vec3<double>(z * size, 0, 0)}) {
@@ -321,7 +321,7 @@ TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and increases along ever
   Draws draws(6);
   for (double eps : {0.02, 0.1, 1.0, 5.0}) {
     const ShapeVec<Shape, double> a = with_exponents<Shape>(defaults<Shape>(), eps);
-    const ShapeFaceOf<Shape> face;
+    const ShapeInterfaceOf<Shape> face;
     for (int trial = 0; trial < 40; ++trial) {
       const Vec3<double> direction = draws.vector(1);
       double before = 1;
@@ -354,7 +354,7 @@ TEMPLATE_LIST_TEST_CASE("mesh_label returns material points of the surface", "[s
   Draws draws(8);
   for (double eps : {0.02, 0.1, 0.6, 1.0, 1.9, 5.0}) {
     const ShapeVec<Shape, double> a = with_exponents<Shape>(defaults<Shape>(), eps);
-    const ShapeFaceOf<Shape> face;
+    const ShapeInterfaceOf<Shape> face;
     for (int trial = 0; trial < 100; ++trial) {
       const Vec3<double> g =
           Shape::mesh == MeshPattern::ball ? draws.vector(1) : Vec3<double>(draws.vector(kPi));

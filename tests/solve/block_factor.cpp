@@ -158,7 +158,7 @@ TEST_CASE("block factor: redundant rows get zero solutions, and the remaining ro
     VecX<double> x = b;
     factor.solve(x);
     CHECK(factor.rank() == n - 1);
-    CHECK((factor.held(copy) || factor.held(original)));
+    CHECK((factor.excluded(copy) || factor.excluded(original)));
     CHECK((sample.A * x - b).norm() <= 1e-9 * b.norm());
   }
 }
@@ -203,10 +203,10 @@ TEST_CASE("cancellation in a pivot is measured relative to the cancelling entrie
     factor.clear(pattern);
     *factor.block(pattern.place(0, 0).offset) = 1e-20;
     *factor.block(pattern.place(1, 1).offset) = 2;
-    if (measured) factor.measure_by(0, 1);
+    if (measured) factor.raise_scale(0, 1);
     factor.factor();
-    CHECK(factor.held(0) == measured);
-    CHECK_FALSE(factor.held(1));
+    CHECK(factor.excluded(0) == measured);
+    CHECK_FALSE(factor.excluded(1));
     VecX<double> x(2);
     x << 1, 6;
     factor.solve(x);

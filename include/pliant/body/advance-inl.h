@@ -19,7 +19,7 @@ PLIANT_INLINE void advance_part(const PartModel& m, VecX<double>& q, const Eigen
 }
 
 PLIANT_INLINE void advance_whole_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h) {
-  advance_part(m, q, share_of(m, v), h);
+  advance_part(m, q, part_velocities(m, v), h);
   q.segment(m.q0 + 7 + m.n_s, m.n_d()) += h * v.segment(m.v0 + 6 + m.n_s, m.n_d());
 }
 
@@ -48,17 +48,18 @@ PLIANT_INLINE void scatter_velocity(const PartModel& m, const PartWorkspace<doub
     VecX<double> change(x.size());
     gather_velocity(m, w, v, change);
     change = w.local->A_inverse * (x - change);
-    m.local->push_all(m.shared, change, *w.local, v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+    m.local->push_all(m.joint_points, change, *w.local, v.segment(m.v0 + 6 + m.n_s, m.n_d()));
   }
-  share_of(m, v) = x.head(6 + m.n_s);
+  part_velocities(m, v) = x.head(6 + m.n_s);
   v.segment<3>(m.v0) = w.R * x.head<3>();
 }
 
-PLIANT_INLINE void advance_with(const PartModel& m, const PartWorkspace<double>& w,
-                                const Eigen::Ref<const VecX<double>>& x, double h, VecX<double>& q) {
+PLIANT_INLINE void advance_part_in_group(const PartModel& m, const PartWorkspace<double>& w,
+                                         const Eigen::Ref<const VecX<double>>& x, double h, VecX<double>& q) {
   advance_part(m, q, world_velocity(w, x.head(6 + m.n_s)), h);
   if (m.local != nullptr)
-    m.local->push_all(m.shared, w.local->A_inverse * (h * x), *w.local, q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    m.local->push_all(m.joint_points, w.local->A_inverse * (h * x), *w.local,
+                      q.segment(m.q0 + 7 + m.n_s, m.n_d()));
 }
 
 PLIANT_INLINE void normalise_rotations(const Model& model, VecX<double>& q) {
@@ -66,12 +67,13 @@ PLIANT_INLINE void normalise_rotations(const Model& model, VecX<double>& q) {
     if (m.q0 >= 0) q.segment<4>(m.q0 + 3).normalize();
 }
 
-PLIANT_INLINE void stop_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v) {
-  for (std::size_t i = 0; i < work.held.size(); ++i) {
-    if (work.held[i] == 0) continue;
+PLIANT_INLINE void zero_inertialess_velocities(const Model& model, const Workspace<double>& work,
+                                               VecX<double>& v) {
+  for (std::size_t i = 0; i < work.without_inertia.size(); ++i) {
+    if (work.without_inertia[i] == 0) continue;
     const PartModel& m = model.parts()[i];
     for (int k = 0; k < 6 + m.n_s; ++k)
-      if (work.parts[i].held(k)) v[m.v0 + k] = 0;
+      if (work.parts[i].without_inertia(k)) v[m.v0 + k] = 0;
   }
 }
 

@@ -18,10 +18,10 @@ void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const Ve
 void advance_whole_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h);
 
 /// Returns the entries (c_dot, omega, q_s_dot) of a part in the velocities v of all parts.
-inline auto share_of(const PartModel& m, VecX<double>& v) {
+inline auto part_velocities(const PartModel& m, VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
-inline auto share_of(const PartModel& m, const VecX<double>& v) {
+inline auto part_velocities(const PartModel& m, const VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
 
@@ -38,13 +38,13 @@ void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by h times the
 /// response to the impulses that cause the velocities x, as in scatter_velocity().
-void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& x,
-                  double h, VecX<double>& q);
+void advance_part_in_group(const PartModel& m, const PartWorkspace<double>& w,
+                           const Eigen::Ref<const VecX<double>>& x, double h, VecX<double>& q);
 
 /// Normalises every quaternion.
 void normalise_rotations(const Model& model, VecX<double>& q);
 
 /// Sets velocities that had no inertia at the last evaluation, for instance rates of parameters, to zero.
-void stop_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v);
+void zero_inertialess_velocities(const Model& model, const Workspace<double>& work, VecX<double>& v);
 
 }  // namespace pliant

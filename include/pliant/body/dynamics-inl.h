@@ -72,7 +72,7 @@ PLIANT_INLINE void Dynamics::factor_joints(double t, const VecX<double>& q, cons
                                            Workspace<double>& work, RankRule rank) const {
   work.joints.rank = rank;
   place_anchors(t, q, v, modes, island, work);
-  work.held.resize(work.parts.size());
+  work.without_inertia.resize(work.parts.size());
   auto place = [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     detail::evaluate_positions<double>(model_->parts()[k], t, q, v, work.parts[k]);
@@ -85,7 +85,7 @@ PLIANT_INLINE void Dynamics::factor_joints(double t, const VecX<double>& q, cons
 PLIANT_INLINE void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part,
                                             Workspace<double>& work) const {
   work.parts.resize(model_->parts().size());
-  work.held.resize(model_->parts().size());
+  work.without_inertia.resize(model_->parts().size());
   const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
   // Time 0 stands for any time: the positions of a part with coordinates depend on q and v alone.

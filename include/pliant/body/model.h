@@ -30,7 +30,7 @@ struct PartModel {
   const PrescribedMotion* motion;  ///< nullptr for a part without prescribed motion
   /// For a part that deforms locally: the points at which joints act, as weights among the nodes. Each point
   /// appears once.
-  std::vector<NodeWeights> shared;
+  std::vector<NodeWeights> joint_points;
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
   VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
@@ -42,7 +42,7 @@ struct PartModel {
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
-  std::vector<int> port_place;                ///< number of each port in `shared`; -1: no joint acts on it
+  std::vector<int> port_place;                ///< number of each port in `joint_points`; -1: no joint acts on it
   Eigen::Matrix3d R0;                         ///< orientation of a fixed part
   Part::Use use;                              ///< locks the part against changes
 
@@ -57,7 +57,7 @@ struct PartModel {
   int n_q() const { return 7 + n_s + n_d(); }  ///< number of coordinates in q
   int n_v() const { return 6 + n_s + n_d(); }  ///< number of velocities in v
   /// Number of velocities of the part in a group (constraint/group.h): v_r, and d_dot at its joints.
-  int n_x() const { return 6 + n_s + 3 * static_cast<int>(shared.size()); }
+  int n_x() const { return 6 + n_s + 3 * static_cast<int>(joint_points.size()); }
 };
 
 /// An attachment: a port of a part, or a point of the world.
@@ -169,7 +169,7 @@ class Model {
   /// Returns the state at time 0.
   State initial_state() const;
   /// Sets State::at_limit of all parameters from their values.
-  void note_limits(State& state) const;
+  void record_limits(State& state) const;
   /// Returns the values and rates of all parameters of a part in a state; of a part without coordinates, its
   /// rest values.
   ParameterValues<double> values(const State& state, int part) const;
@@ -193,7 +193,7 @@ class Model {
   /// Returns the positions of the nodes of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
   /// Whether a part is motionless: it is fixed without prescribed motion, or it sleeps.
-  bool lies_still(const State& state, int part) const {
+  bool is_motionless(const State& state, int part) const {
     const PartModel& m = parts_[static_cast<std::size_t>(part)];
     return m.q0 < 0 ? m.motion == nullptr : sleeps(state, part);
   }
@@ -215,7 +215,7 @@ class Model {
   /// Adds a port for a point and returns its attachment. what: the load or joint of the point, for messages.
   PortRef attach(const Point& point, const std::string& what);
   void note_switch_times();
-  /// Fills in PartModel::shared and port_place of parts that deform locally.
+  /// Fills in PartModel::joint_points and port_place of parts that deform locally.
   void share_joint_points();
   /// Places C_q^T of all sides in the flat arrays of the workspace.
   void assign_side_offsets();

@@ -60,9 +60,9 @@ struct PartWorkspace {
     factor.solve(x);
   }
   /// Whether velocity k of v_r has no inertia now; its acceleration is zero.
-  bool held(int k) const {
-    if (local) return local->held.test(static_cast<std::size_t>(k));
-    return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k);
+  bool without_inertia(int k) const {
+    if (local) return local->without_inertia.test(static_cast<std::size_t>(k));
+    return rigid != nullptr ? rigid->rigid_factor.excluded(k) : factor.excluded(k);
   }
 };
 
@@ -79,13 +79,13 @@ inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
-  std::vector<int> before_joints;         ///< numbers of the parts that are evaluated before any joint
-  std::vector<std::uint8_t> held;         ///< of each part: 1 if one of its velocities has no inertia
-  ConstraintWorkspace<S> joints;          ///< stage 4
-  GroupVectors<S, kMaxVelocities> alone;  ///< vectors of the part whose limits are being projected
-  std::vector<RigidWorkspace> rigid;      ///< quantities of each rigid island
-  VecX<S> v_dot;                          ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
-  Vec<S, kWorks> power;                   ///< stages 3 to 5: rates of the works of the ledger, W
+  std::vector<int> before_joints;             ///< numbers of the parts that are evaluated before any joint
+  std::vector<std::uint8_t> without_inertia;  ///< of each part: 1 if one of its velocities has no inertia
+  ConstraintWorkspace<S> joints;              ///< stage 4
+  GroupVectors<S, kMaxVelocities> alone;      ///< vectors of the part whose limits are being projected
+  std::vector<RigidWorkspace> rigid;          ///< quantities of each rigid island
+  VecX<S> v_dot;                              ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
+  Vec<S, kWorks> power;                       ///< stages 3 to 5: rates of the works of the ledger, W
 };
 
 }  // namespace pliant

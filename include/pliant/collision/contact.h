@@ -27,7 +27,7 @@ struct Contact {
   double gap = 0;                              ///< m; negative: depth of the overlap
   /// Prescribed contribution to the velocity of side b relative to side a at x, m/s, world. It comes from the
   /// motion of a plane or of a part with prescribed motion.
-  Vec3<double> carried = Vec3<double>::Zero();
+  Vec3<double> prescribed_velocity = Vec3<double>::Zero();
   double friction = 0, restitution = 0;
   /// Time since the impulse of this contact acted, s. The positions of the pushed parts change by this time
   /// multiplied by the change of their velocities.

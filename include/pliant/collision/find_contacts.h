@@ -38,7 +38,7 @@ class ContactFinder {
   Vec3<double> velocity(const State& state, const Contact& contact) const;
   /// Returns the largest admissible depth of a contact, m. The search may find a deeper contact on the far
   /// side of the thinner part, where the normal is wrong. Only for parts without local deformation.
-  double thin(const Contact& contact) const;
+  double max_resolved_depth(const Contact& contact) const;
   /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
   /// one.
   static constexpr double kMaxTravelShare = 0.4;
@@ -66,7 +66,7 @@ class ContactFinder {
                                  const Neighbourhood& foreseen) const;
   /// Returns the least gap between the two sides of a contact, m. It is at most max_gap. Over an obstacle it
   /// is also at most a tenth of the size of the part.
-  double least_gap(const State& state, double t, const Contact& contact, double max_gap) const;
+  double min_gap(const State& state, double t, const Contact& contact, double max_gap) const;
 
  private:
   struct Placed;

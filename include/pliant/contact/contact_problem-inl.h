@@ -113,7 +113,8 @@ PLIANT_INLINE void ContactProblem::add_limits() {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         const int mode = state_.at_limit[at(m.limit0 + k)];
-        if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 || work_.parts[at(part)].held(6 + k))
+        if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 ||
+            work_.parts[at(part)].without_inertia(6 + k))
           continue;
         system_.add_row();
         Side side = make_side(part);
@@ -204,7 +205,7 @@ PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& 
         m.local->modal()->respond(frame, rates, w);
       Y.col(r).segment(side.first, frame.size()) += frame;
       Y.col(r).segment(side.first + frame.size(), m.n_x() - frame.size()) +=
-          at_points(m.shared, m.local->at_nodes(rates.data(), buffer));
+          at_points(m.joint_points, m.local->at_nodes(rates.data(), buffer));
       Y.col(r).segment(first, n) += rates;
     }
     return;
@@ -240,7 +241,7 @@ PLIANT_INLINE void ContactProblem::add_joint_responses(int contact) {
         const PartModel& m = model_.parts()[at(part)];
         if (movers_.n_local(part) == 0) continue;
         const LocalWorkspace& w = *work_.parts[at(part)].local;
-        m.local->push_all(m.shared, w.A_inverse * x.segment(island->first[k], m.n_x()), w,
+        m.local->push_all(m.joint_points, w.A_inverse * x.segment(island->first[k], m.n_x()), w,
                           Y.col(r).segment(movers_.first_local(mover, part), m.n_d()));
       }
     }
@@ -253,7 +254,7 @@ PLIANT_INLINE std::vector<Vec3<double>> ContactProblem::velocities(const State& 
   std::vector<Vec3<double>> all;
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k)
     all.push_back(contact_problem::axes(contacts_[at(k)]) * (system_.velocity(k, x) - system_.constant(k)) -
-                  contacts_[at(k)].carried);
+                  contacts_[at(k)].prescribed_velocity);
   return all;
 }
 
@@ -261,7 +262,7 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
   const int n = static_cast<int>(contacts_.size());
   for (int k = 0; k < n; ++k) {
     const Contact& contact = contacts_[at(k)];
-    system_.constant(k) = -contact_problem::axes(contact).transpose() * contact.carried;
+    system_.constant(k) = -contact_problem::axes(contact).transpose() * contact.prescribed_velocity;
     system_.constant(k)[0] -= contact.rebound;
   }
   for (const String& string : strings_) {

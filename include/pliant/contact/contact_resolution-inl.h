@@ -223,7 +223,7 @@ PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const 
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
     const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
     state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
-    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
+    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.prescribed_velocity);
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(motion.force_time, motion.h);
@@ -360,7 +360,7 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
   // A body is represented by the first part of its island.
   auto body_of = [&](int part) {
     const int island = model.parts()[at(part)].island;
-    return connected.leader(island < 0 ? part : model.islands()[at(island)].parts.front());
+    return connected.root(island < 0 ? part : model.islands()[at(island)].parts.front());
   };
   for (const Contact& contact : contacts)
     if (is_whole(contact.a) && is_whole(contact.b))

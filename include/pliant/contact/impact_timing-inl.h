@@ -108,7 +108,7 @@ class ImpactGap {
   double at_state(const State& state, double t) const {
     double smallest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : impacts_)
-      smallest = std::min(smallest, finder_.least_gap(state, t, contact, 4 * largest_));
+      smallest = std::min(smallest, finder_.min_gap(state, t, contact, 4 * largest_));
     return smallest;
   }
   /// Moves the state of the step to a time tau into the motion, s, by a step of the method.

@@ -121,8 +121,9 @@ PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const st
                                               double gravity) const {
   double longest = motion.h;
   for (const Contact& contact : resting)
-    longest = std::min(longest, resting_contacts::kRepeatShare *
-                                    std::sqrt(finder_.thin(contact) / (motion.reach * gravity)));
+    longest =
+        std::min(longest, resting_contacts::kRepeatShare *
+                              std::sqrt(finder_.max_resolved_depth(contact) / (motion.reach * gravity)));
   return longest;
 }
 
@@ -133,7 +134,7 @@ PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const st
     const Vec3<double> displacement =
         motion.h * ((1 - motion.reach) * finder_.velocity(motion.before, contact) +
                     motion.reach * finder_.velocity(state, contact));
-    const double share = std::abs(displacement.dot(contact.normal)) / finder_.thin(contact);
+    const double share = std::abs(displacement.dot(contact.normal)) / finder_.max_resolved_depth(contact);
     if (share > 1) longest = std::min(longest, resting_contacts::kRepeatShare * motion.h / std::sqrt(share));
   }
   return longest;

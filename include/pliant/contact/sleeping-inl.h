@@ -253,7 +253,7 @@ PLIANT_INLINE void Sleeping::fall_asleep(const std::vector<Contact>& contacts, d
   DisjointSets sets = connected_parts(touching);
   std::vector<bool> awake(model_.parts().size());
   auto keep_awake = [&](int part) {
-    if (part >= 0) awake[at(sets.leader(part))] = true;
+    if (part >= 0) awake[at(sets.root(part))] = true;
   };
   // A part stays awake if a part or plane with prescribed motion touches it.
   for (const Contact& contact : touching) {
@@ -269,9 +269,9 @@ PLIANT_INLINE void Sleeping::fall_asleep(const std::vector<Contact>& contacts, d
     if (state.at_rest[at(i)] >= 0 && state.at_rest[at(i)] < settings_->after) keep_awake(i);
   std::vector<int> falling;
   for (const int i : moving_) {
-    const int leader = sets.leader(i);
-    if (sleeps(state, i) || awake[at(leader)]) continue;
-    state.at_rest[at(i)] = -1 - leader;
+    const int root = sets.root(i);
+    if (sleeps(state, i) || awake[at(root)]) continue;
+    state.at_rest[at(i)] = -1 - root;
     falling.push_back(i);
   }
   if (falling.empty()) return;

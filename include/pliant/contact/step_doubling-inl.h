@@ -114,7 +114,7 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   begin_step();
   state = initial;
   const Halves halves = step_halves(method, step, whole, initial);
-  const double method_error = method.take_error();
+  const double method_error = method.pop_error();
   if (!halves.finite || !(method_error <= 1))
     return {std::numeric_limits<double>::infinity(), order, halves.length};
   const bool has_impact = step.counters.impacts > impacts;
@@ -225,7 +225,7 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
     const Contact& contact = record_.contacts[k];
     if (!(record_.impulses[k].dot(contact.normal) > 0)) continue;
     const double opening = finder_.velocity(state, contact).dot(contact.normal),
-                 gap = finder_.least_gap(state, t, contact, smaller_size(model, contact));
+                 gap = finder_.min_gap(state, t, contact, smaller_size(model, contact));
     state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / step.h});
   }
   // Energies are not linear in the coordinates and velocities either. Work::contact gets the difference.

@@ -56,7 +56,7 @@ inline void displace_locally(const ContactProblem& problem, const PartOfMover& s
   const Eigen::Index n_r = 6 + m.n_s;
   const VecX<double> x = problem.after(share.mover), shift = problem.shift(share.mover);
   const int first = share.first, local = problem.movers().first_local(share.mover, share.part);
-  share_of(m, state.v) = world_velocity(w, x.segment(first, n_r));
+  part_velocities(m, state.v) = world_velocity(w, x.segment(first, n_r));
   state.v.segment(m.v0 + n_r, m.n_d()) = x.segment(local, m.n_d());
   advance_part(m, state.q, world_velocity(w, shift.segment(first, n_r)), 1);
   state.q.segment(m.q0 + 1 + n_r, m.n_d()) += shift.segment(local, m.n_d());
@@ -110,7 +110,7 @@ PLIANT_INLINE void evaluate_touched(const Dynamics& dynamics, const State& state
   for (std::vector<int>* numbers : {&alone, &islands, &by_nodes}) touched_parts::sort_unique(*numbers);
   dynamics.evaluate_masses(state.q, state.v, alone, work);
   for (const int i : by_nodes)
-    model.parts()[at(i)].local->compliance(model.parts()[at(i)].shared, *work.parts[at(i)].local);
+    model.parts()[at(i)].local->compliance(model.parts()[at(i)].joint_points, *work.parts[at(i)].local);
   for (const int i : islands)
     dynamics.factor_joints(t, state.q, state.v, state.joints, model.islands()[at(i)], work);
 }
@@ -123,7 +123,8 @@ PLIANT_INLINE void apply_solution(const ContactProblem& problem, const Model& mo
       return touched_parts::displace_locally(problem, {mover, part, first}, m, work.parts[at(part)], state);
     if (mover.node < 0) {
       scatter_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
-      return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);
+      return advance_part_in_group(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1,
+                                   state.q);
     }
     const Eigen::Quaterniond to_body = model.orientation(state, part).conjugate();
     const Vec3<double> shift = to_body * problem.shift(mover).head<3>(),

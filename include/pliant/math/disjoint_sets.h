@@ -14,13 +14,13 @@ class DisjointSets {
   explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
 
   /// Returns the smallest element of the set that contains i.
-  int leader(int i) {
+  int root(int i) {
     while (parent(i) != i) i = parent(i) = parent(parent(i));
     return i;
   }
   /// Merges the set of i and the set of j.
   void unite(int i, int j) {
-    const int one = leader(i), other = leader(j);
+    const int one = root(i), other = root(j);
     parent(one < other ? other : one) = one < other ? one : other;
   }
 

@@ -27,20 +27,20 @@ T angle_over_sine(const T& cosine, const T& sine2) {
 }
 
 /// A rotation with cos theta at or below this value is treated as a half turn. The sign of its axis is not
-/// defined, so rotation_vector first rotates Q by kOffHalfTurn about the nearest coordinate axis.
-inline constexpr double kHalfTurn = -1 + 1e-12;
-inline constexpr double kOffHalfTurn = 1e-5;  // rad
+/// defined, so rotation_vector first rotates Q by kHalfTurnOffset about the nearest coordinate axis.
+inline constexpr double kHalfTurnCosine = -1 + 1e-12;
+inline constexpr double kHalfTurnOffset = 1e-5;  // rad
 
 /// Returns the rotation vector (rad) of a rotation matrix Q.
 template <class T>
 Vec3<T> rotation_vector(const Mat3<T>& Q) {
   auto cosine = [](const Mat3<T>& R) { return T((R(0, 0) + R(1, 1) + R(2, 2) - T(1.0)) * T(0.5)); };
-  if (plain(cosine(Q)) <= kHalfTurn) {
+  if (plain(cosine(Q)) <= kHalfTurnCosine) {
     int k = 0;  // the coordinate axis that is nearest to the axis of the rotation
     for (int i = 1; i < 3; ++i)
       if (plain(Q(i, i)) > plain(Q(k, k))) k = i;
     const int a = (k + 1) % 3, b = (k + 2) % 3;
-    const T c(std::cos(kOffHalfTurn)), s(std::sin(kOffHalfTurn));
+    const T c(std::cos(kHalfTurnOffset)), s(std::sin(kHalfTurnOffset));
     Mat3<T> off = Q;
     off.col(a) = Q.col(a) * c + Q.col(b) * s;
     off.col(b) = Q.col(b) * c - Q.col(a) * s;

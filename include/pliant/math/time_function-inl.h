@@ -172,15 +172,16 @@ PLIANT_INLINE TimeFunction TimeFunction::formula(const std::string& text) {
   return TimeFunction(std::make_shared<detail::FormulaFunction>(std::move(formula)));
 }
 
-PLIANT_INLINE TimeVector::Passage TimeVector::over(double t, double h) const {
-  Passage passage{Vec3<double>::Zero(), 0};
-  if (is_constant()) return passage;
-  passage.rate = (value(t + h) - value(t)) / h;
+PLIANT_INLINE TimeVector::MeanRate TimeVector::over(double t, double h) const {
+  MeanRate mean{Vec3<double>::Zero(), 0};
+  if (is_constant()) return mean;
+  mean.rate = (value(t + h) - value(t)) / h;
   for (const double share : kMoments) {
     const Vec3<Taylor2<double>> x = at(t + share * h);
-    passage.beside = std::max(passage.beside, (Vec3<double>(x[0].d, x[1].d, x[2].d) - passage.rate).norm());
+    mean.max_deviation =
+        std::max(mean.max_deviation, (Vec3<double>(x[0].d, x[1].d, x[2].d) - mean.rate).norm());
   }
-  return passage;
+  return mean;
 }
 
 }  // namespace pliant

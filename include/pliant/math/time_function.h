@@ -96,12 +96,12 @@ struct TimeVector {
 
   /// The mean rate over a time interval, and the largest distance of the rate from this mean, sampled at
   /// kMoments.
-  struct Passage {
-    Vec3<double> rate;  ///< change / h, in units of the function per second
-    double beside;      ///< in the same units
+  struct MeanRate {
+    Vec3<double> rate;     ///< change / h, in units of the function per second
+    double max_deviation;  ///< in the same units
   };
   /// Returns the passage from t to t + h (s).
-  Passage over(double t, double h) const;
+  MeanRate over(double t, double h) const;
 };
 
 /// Fractions of a step at which functions of time are sampled. They are not equally spaced, so that a

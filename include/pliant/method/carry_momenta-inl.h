@@ -16,7 +16,7 @@ PLIANT_INLINE void carry_momenta(const Model& model, const Workspace<double>& wo
                                  const VecX<double>& v_before, double h, State& state) {
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
-    if (m.q0 < 0 || m.local != nullptr || work.held[i] != 0) continue;
+    if (m.q0 < 0 || m.local != nullptr || work.without_inertia[i] != 0) continue;
     const Vec3<double> omega_before = v_before.segment<3>(m.v0 + 3), omega = state.v.segment<3>(m.v0 + 3);
     if (omega_before.isZero(0) && omega.isZero(0)) continue;
     const PartWorkspace<double>& w = work.parts[i];

@@ -72,9 +72,7 @@ void ErrorScale::visit_velocities(const VecX<double>& v_error, const VecX<double
 PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<double>& v_error,
                                       const VecX<double>& v) const {
   double largest = 0;
-  auto visit = [&](double error, const PartModel&, const char*) {
-    largest = max_or_nan(error, largest);
-  };
+  auto visit = [&](double error, const PartModel&, const char*) { largest = max_or_nan(error, largest); };
   visit_coordinates(q_error, visit);
   visit_velocities(v_error, v, visit);
   return largest / tolerance_;
@@ -82,9 +80,8 @@ PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error, const VecX<do
 
 PLIANT_INLINE double ErrorScale::norm(const VecX<double>& q_error) const {
   double largest = 0;
-  visit_coordinates(q_error, [&](double error, const PartModel&, const char*) {
-    largest = max_or_nan(error, largest);
-  });
+  visit_coordinates(
+      q_error, [&](double error, const PartModel&, const char*) { largest = max_or_nan(error, largest); });
   return largest / tolerance_;
 }
 

@@ -13,7 +13,7 @@
 namespace pliant {
 
 /// The smallest and the largest tolerance of a simulation.
-inline constexpr double kLeastTolerance = 1e-12, kGreatestTolerance = 0.1;
+inline constexpr double kMinTolerance = 1e-12, kMaxTolerance = 0.1;
 
 class ErrorScale {
  public:

@@ -9,7 +9,7 @@
 #include <pliant/body/advance.h>
 #include <pliant/math/header_only.h>
 #include <pliant/method/implicit/stage_solver.h>
-#include <pliant/method/implicit/stiff_pushes.h>
+#include <pliant/method/implicit/stiff_projection_metric.h>
 #include <pliant/method/linear_growth.h>
 #include <pliant/project/project.h>
 
@@ -61,7 +61,7 @@ PLIANT_INLINE void Esdirk::step(StepContext& step) {
   dynamics.accelerations(t, state.q, state.v, state, work);
   ++step.counters.evaluations;
   v_ = state.v;
-  stop_inertialess(model, work, v_);
+  zero_inertialess_velocities(model, work, v_);
   dynamics.coordinate_rates(state.q, v_, q_dot_);
   q_rates_.col(0) = q_dot_;
   v_rates_.col(0) = work.v_dot;
@@ -89,14 +89,14 @@ PLIANT_INLINE void Esdirk::step(StepContext& step) {
       r_v_ += h * (esdirk::weight(k) - esdirk::kB3[k]) * v_rates_.col(k);
     }
     solver_->damp(r_q_, r_v_);
-    note_error(scale()->norm(r_q_, r_v_, state.v));
+    record_error(scale()->norm(r_q_, r_v_, state.v));
   }
   state.q = q_;  // stiffly accurate: the last stage is the end of the step
   state.v = v_;
   state.work += h * power;
   step.t = t + h;
   end_motion(step);
-  const StiffPushes pushes(dynamics, step.t, c, state, work);
+  const StiffProjectionMetric pushes(dynamics, step.t, c, state, work);
   project(step);
 }
 

@@ -70,7 +70,7 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   Workspace<double>& work = step.work;
   step.dynamics.rates(t, q_, v_, step.state, step.work, rank);
   ++step.counters.evaluations;
-  stop_inertialess(step.model(), work, v_);
+  zero_inertialess_velocities(step.model(), work, v_);
   step.dynamics.coordinate_rates(q_, v_, q_dot_);
   free_.store_loads(stage, q_, v_, work.v_dot);
   q_rates_.col(stage) = q_dot_;
@@ -140,7 +140,7 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
     last_ = state;
     last_t_ = t + h;
   }
-  note_error(estimate_error(h, v_start_));
+  record_error(estimate_error(h, v_start_));
 }
 
 PLIANT_INLINE StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const State& low, double h,

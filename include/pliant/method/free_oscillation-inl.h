@@ -88,7 +88,7 @@ PLIANT_INLINE VelocityResponse velocity_response(const Oscillators& oscillators,
 }
 
 PLIANT_INLINE bool oscillates_freely(const PartModel& part) {
-  return part.local != nullptr && part.local->oscillators() != nullptr && part.shared.empty();
+  return part.local != nullptr && part.local->oscillators() != nullptr && part.joint_points.empty();
 }
 
 }  // namespace pliant

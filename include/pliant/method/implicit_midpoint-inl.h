@@ -9,7 +9,7 @@
 #include <pliant/body/advance.h>
 #include <pliant/math/header_only.h>
 #include <pliant/method/implicit/stage_solver.h>
-#include <pliant/method/implicit/stiff_pushes.h>
+#include <pliant/method/implicit/stiff_projection_metric.h>
 #include <pliant/method/linear_growth.h>
 #include <pliant/project/project.h>
 
@@ -37,7 +37,7 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   dynamics.accelerations(t, state.q, state.v, state, work);
   ++step.counters.evaluations;
   v_ = state.v;
-  stop_inertialess(model, work, v_);
+  zero_inertialess_velocities(model, work, v_);
   dynamics.coordinate_rates(state.q, v_, q_dot_);
   q_ = state.q + 0.5 * h * q_dot_;
   v_ += 0.5 * h * work.v_dot;
@@ -48,7 +48,7 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   state.work += h * work.power;
   step.t = t + h;
   end_motion(step);
-  const StiffPushes pushes(dynamics, step.t, 0.5 * h, state, work);
+  const StiffProjectionMetric pushes(dynamics, step.t, 0.5 * h, state, work);
   project(step);
 }
 

@@ -50,14 +50,12 @@ class Integrator {
   /// Measures the errors of the next steps by this scale, which must outlive them; nullptr: no measurement.
   void measure(const ErrorScale* scale) { scale_ = scale; }
   /// Returns the largest error of the steps since the last call, in tolerances, and resets it to 0.
-  double take_error() { return std::exchange(error_, 0); }
+  double pop_error() { return std::exchange(error_, 0); }
 
  protected:
   const ErrorScale* scale() const { return scale_; }
-  /// Includes an error, in tolerances, in the next result of take_error().
-  void note_error(double error) {
-    error_ = max_or_nan(error, error_);
-  }
+  /// Includes an error, in tolerances, in the next result of pop_error().
+  void record_error(double error) { error_ = max_or_nan(error, error_); }
   /// Projects limits, strings and joints at the end of a step, for all methods that do not apply impulses
   /// before the coordinates move. The error of the step includes the displacement by the projection or, if a
   /// joint closes in the step, the effect of the unknown time of closing.

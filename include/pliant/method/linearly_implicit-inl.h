@@ -78,15 +78,16 @@ PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
     const PartModel& m = model.parts()[i];
     if (parts[i] == nullptr || (m.island < 0 && m.n_s == 0)) continue;
     PartWorkspace<double>& w = work.parts[i];
-    m.local->compliance(m.shared, *w.local);
+    m.local->compliance(m.joint_points, *w.local);
     w.inertia.M = w.local->A_inverse;
   }
   for (const Island& island : model.islands())
     if (has_implicit(island, parts)) factor_joints<double>(model, island, work.parts, work.joints);
 }
 
-/// Sets string_is_slack_ if, at this evaluation, a closed string of an island with an implicit part does not
-/// pull. Such a string may still pull later in the step, and an evaluation at one moment cannot predict this.
+/// Sets closed_string_was_slack_ if, at this evaluation, a closed string of an island with an implicit part
+/// does not pull. Such a string may still pull later in the step, and an evaluation at one moment cannot
+/// predict this.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
@@ -94,18 +95,19 @@ PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, co
     if (!has_implicit(island, second_order_parts_)) continue;
     const std::vector<OneSidedRow>& pushed = work.joints.pushed[i];
     for (std::size_t k = 0; k < island.strings.size(); ++k)
-      string_is_slack_ = string_is_slack_ ||
-                         (state.joints[static_cast<std::size_t>(island.strings[k])] == JointMode::closed &&
-                          std::none_of(pushed.begin(), pushed.end(), [&](const OneSidedRow& row) {
-                            return row.part < 0 && row.k == static_cast<int>(k);
-                          }));
+      closed_string_was_slack_ =
+          closed_string_was_slack_ ||
+          (state.joints[static_cast<std::size_t>(island.strings[k])] == JointMode::closed &&
+           std::none_of(pushed.begin(), pushed.end(), [&](const OneSidedRow& row) {
+             return row.part < 0 && row.k == static_cast<int>(k);
+           }));
   }
 }
 
 /// Returns whether the step must be repeated with first order: the mode of a string or limit of an implicit
 /// part changed in the step, or a closed string did not pull. now: the state after the step.
-PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State& now) const {
-  if (string_is_slack_) return true;
+PLIANT_INLINE bool LinearlyImplicit::needs_first_order(const Model& model, const State& now) const {
+  if (closed_string_was_slack_) return true;
   for (const Island& island : model.islands())
     if (has_implicit(island, second_order_parts_))
       for (const int j : island.strings)
@@ -124,9 +126,9 @@ PLIANT_INLINE void LinearlyImplicit::step(StepContext& step) {
   const bool may_stop = linearly_implicit::can_be_stopped(step.model());
   if (may_stop) before_ = step.state;
   const double start = step.t;
-  string_is_slack_ = false;
+  closed_string_was_slack_ = false;
   advance_second_order(step);
-  if (!may_stop || !was_stopped(step.model(), step.state)) return;
+  if (!may_stop || !needs_first_order(step.model(), step.state)) return;
   step.state = before_;
   step.t = start;
   advance_first_order(step);
@@ -140,7 +142,7 @@ PLIANT_INLINE void LinearlyImplicit::advance_first_order(StepContext& step) {
   first_order_ = true;
   dynamics.accelerations(t, state.q, state.v, state, work);
   ++step.counters.evaluations;
-  stop_inertialess(dynamics.model(), work, state.v);
+  zero_inertialess_velocities(dynamics.model(), work, state.v);
   prepare_implicit_parts(step, h);
   dynamics.coordinate_rates(state.q, state.v, q_rate1_);
   v_rate1_ = work.v_dot;
@@ -149,7 +151,7 @@ PLIANT_INLINE void LinearlyImplicit::advance_first_order(StepContext& step) {
     dynamics.coordinate_rates(state.q, v_rate1_, q_dot_);
     q_dot_ *= 0.5 * h * h;
     v_.setZero(state.v.size());
-    note_error(scale()->norm(q_dot_, v_, state.v));
+    record_error(scale()->norm(q_dot_, v_, state.v));
   }
   state.v += h * v_rate1_;
   dynamics.coordinate_rates(state.q, state.v, q_rate1_);
@@ -170,7 +172,7 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   dynamics.accelerations(t, state.q, state.v, state, work);
   ++step.counters.evaluations;
   v_ = state.v;
-  stop_inertialess(model, work, v_);
+  zero_inertialess_velocities(model, work, v_);
   prepare_implicit_parts(step, c);
   record_slack_strings(model, state, work);
   dynamics.coordinate_rates(state.q, v_, q_rate1_);
@@ -185,7 +187,7 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   dynamics.accelerations(t + h, q_, v_, state, work, RankRule::keep);
   ++step.counters.evaluations;
   record_slack_strings(model, state, work);
-  stop_inertialess(model, work, v_);
+  zero_inertialess_velocities(model, work, v_);
   power += work.power;
   dynamics.coordinate_rates(q_, v_, q_rate2_);
   q_rate2_ -= 2 * q_rate1_;
@@ -204,7 +206,7 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
       const PartModel& m = model.parts()[i];
       if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
     }
-    note_error(scale()->norm(q_dot_, v_, state.v));
+    record_error(scale()->norm(q_dot_, v_, state.v));
   }
   state.q += h * (1.5 * q_rate1_ + 0.5 * q_rate2_);
   state.v += h * (1.5 * v_rate1_ + 0.5 * v_rate2_);

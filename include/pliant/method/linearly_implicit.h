@@ -60,13 +60,13 @@ class LinearlyImplicit final : public Integrator {
   void advance_first_order(StepContext& step);
   void end_step(StepContext& step);
   void record_slack_strings(const Model& model, const State& state, const Workspace<double>& work);
-  bool was_stopped(const Model& model, const State& now) const;
+  bool needs_first_order(const Model& model, const State& now) const;
 
   bool touching_ = false;     ///< whether parts that deform locally may touch something
   bool first_order_ = false;  ///< whether the current or last step is one of linearly implicit Euler
   /// Whether at an evaluation of this step a string did not pull, although its mode is JointMode::closed.
   /// Only strings of islands with an implicit part are checked.
-  bool string_is_slack_ = false;
+  bool closed_string_was_slack_ = false;
   // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
   ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order
   State before_;                                          ///< state from which the step can be repeated

@@ -52,7 +52,7 @@ PLIANT_INLINE void Rk4::step(StepContext& step) {
     dynamics.rates(t + rk4::kC[stage] * h, q_, v_, state, work,
                    stage == 0 ? RankRule::decide : RankRule::keep);
     ++step.counters.evaluations;
-    stop_inertialess(dynamics.model(), work, v_);
+    zero_inertialess_velocities(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);
     free_.store_loads(stage, q_, v_, work.v_dot);
     free_.clear_rates(q_dot_);

@@ -41,12 +41,12 @@ PLIANT_INLINE void SemiImplicitEuler::step(StepContext& step) {
   semi_implicit_euler::advance_velocities(h, work.v_dot, state.v, v_before_);
   carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
-  stop_inertialess(dynamics.model(), work, state.v);
+  zero_inertialess_velocities(dynamics.model(), work, state.v);
   pre_step_impulses(step, v_before_, pre_step_);
   for (const PartModel& m : dynamics.model().parts()) {
     if (m.q0 < 0) continue;
     if (oscillates_freely(m))
-      advance_part(m, state.q, share_of(m, state.v), h);
+      advance_part(m, state.q, part_velocities(m, state.v), h);
     else
       advance_whole_part(m, state.q, state.v, h);
   }

@@ -50,14 +50,15 @@ struct StrainPoints {
   int n_points = 0;
   int directions = 3;
   std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
-  /// Relative change of the integrals when the points are doubled once more, at least kStrainSettled; 0 for
-  /// "affine". It is kStrainSettled too if finer rules did not reduce a change of at most 100 kStrainSettled.
-  double settled = 0;
+  /// Relative change of the integrals when the points are doubled once more, at least kStrainTolerance; 0 for
+  /// "affine". It is kStrainTolerance too if finer rules did not reduce a change of at most 100
+  /// kStrainTolerance.
+  double relative_error = 0;
 };
 
 /// A rule is fine enough if doubling its points changes energy, force and stiffness by at most this relative
 /// amount.
-inline constexpr double kStrainSettled = 1e-6;
+inline constexpr double kStrainTolerance = 1e-6;
 
 /// Linear elasticity with the small strain eps = sym(F - I).
 struct SmallStrain {

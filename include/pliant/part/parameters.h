@@ -9,7 +9,7 @@
 
 #include <pliant/deform/chain.h>
 #include <pliant/math/time_function.h>
-#include <pliant/part/shape_face.h>
+#include <pliant/part/shape_interface.h>
 
 namespace pliant {
 
@@ -41,7 +41,7 @@ class Parameters {
   /// Lists the parameters of a shape and a chain: all at their defaults, all frozen. A parameter of a link is
   /// named type.name; several links of one type are named type, type2, type3, ... Throws
   /// std::invalid_argument beyond kMaxParameters.
-  Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& links);
+  Parameters(const ShapeInterface& shape, const std::vector<LinkInfo>& links);
 
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }

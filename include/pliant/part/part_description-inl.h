@@ -47,7 +47,7 @@ inline Inertia<double> rigid_part_inertia(double mass, const Mat3<double>& about
 }  // namespace detail
 
 PLIANT_INLINE PartDescription::PartDescription(std::string name, double density,
-                                               std::unique_ptr<ShapeFace> shape,
+                                               std::unique_ptr<ShapeInterface> shape,
                                                const std::vector<LinkInfo>& links)
     : name_(std::move(name)), shape_(std::move(shape)), parameters_(*shape_, links), density_(density) {
   if (!(density > 0) || !std::isfinite(density))

@@ -80,7 +80,7 @@ class PartDescription {
 
   const std::string& name() const { return name_; }
   const Parameters& parameters() const { return parameters_; }
-  const ShapeFace& shape() const { return *shape_; }
+  const ShapeInterface& shape() const { return *shape_; }
   /// Whether the part has no coordinates because it is fixed or its motion is prescribed.
   bool fixed() const { return fixed_; }
   /// The prescribed motion; nullptr if there is none.
@@ -114,7 +114,7 @@ class PartDescription {
   const Use& use() const { return use_; }
 
  protected:
-  PartDescription(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+  PartDescription(std::string name, double density, std::unique_ptr<ShapeInterface> shape,
                   const std::vector<LinkInfo>& links);
   ~PartDescription() = default;
 
@@ -154,7 +154,7 @@ class PartDescription {
 
   Use use_ = std::make_shared<const int>(0);
   std::string name_;
-  std::unique_ptr<ShapeFace> shape_;
+  std::unique_ptr<ShapeInterface> shape_;
   Parameters parameters_;
   double density_;
   std::optional<double> total_mass_;

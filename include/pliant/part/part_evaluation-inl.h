@@ -116,9 +116,9 @@ PLIANT_INLINE Mat3<double> PartEvaluation::material_gradient(double u, double v,
   return chain_gradient(at, values)[0] * E;
 }
 
-PLIANT_INLINE Vec3<double> PartEvaluation::preimage(const Vec3<double>& p,
-                                                    const ParameterValues<double>& values) const {
-  const Vec3<double> e = undeform(p, values);
+PLIANT_INLINE Vec3<double> PartEvaluation::undeformed_point(const Vec3<double>& p,
+                                                            const ParameterValues<double>& values) const {
+  const Vec3<double> e = inverse_chain(p, values);
   const double* a = values.b.data();
   const double h = shape().half_height(a);
   if (parameters().all_links().empty() || std::abs(e[2]) < (1 - detail::kBelowTip) * h) return e;
@@ -135,12 +135,12 @@ PLIANT_INLINE Vec3<double> PartEvaluation::preimage(const Vec3<double>& p,
 
 PLIANT_INLINE double PartEvaluation::inside_outside(const Vec3<double>& p,
                                                     const ParameterValues<double>& values) const {
-  return shape().gauge(preimage(p, values), values.b.data()) - 1;
+  return shape().gauge(undeformed_point(p, values), values.b.data()) - 1;
 }
 
 PLIANT_INLINE Vec3<double> PartEvaluation::inside_outside_gradient(
     const Vec3<double>& p, const ParameterValues<double>& values) const {
-  Vec3<double> e = preimage(p, values);
+  Vec3<double> e = undeformed_point(p, values);
   if (parameters().links().empty()) return shape().gauge_gradient(e, values.b.data());
   Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
   if (detail::is_singular_gradient(F)) {
@@ -179,14 +179,14 @@ PLIANT_INLINE Vec3<double> PartEvaluation::normal(const Material<double>& m,
   return normals({m}, values)[0];
 }
 
-PLIANT_INLINE bool PartEvaluation::folded(const VecMax<double>& q_s) const {
+PLIANT_INLINE bool PartEvaluation::is_inverted(const VecMax<double>& q_s) const {
   const VecMax<double> still = VecMax<double>::Zero(q_s.size());
   return folds(part(), parameters().expand<double>(q_s, still));
 }
 
 PLIANT_INLINE Material<double> PartEvaluation::label(const Vec3<double>& p,
                                                      const ParameterValues<double>& values) const {
-  return shape().label(preimage(p, values), values.b.data());
+  return shape().label(undeformed_point(p, values), values.b.data());
 }
 
 }  // namespace pliant

@@ -64,7 +64,7 @@ class PartEvaluation : public PartDescription {
                                     const ParameterValues<double>& values) const;
   /// Returns whether a piece of the surface is turned inside out at these values of the dynamic parameters;
   /// see folds() in mesh/folds.h.
-  bool folded(const VecMax<double>& q_s) const;
+  bool is_inverted(const VecMax<double>& q_s) const;
   /// Returns the material point at the position p (m, body frame).
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
@@ -90,7 +90,7 @@ class PartEvaluation : public PartDescription {
   /// all parameters are constant.
   virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
   /// Applies the inverse of the chain to a position.
-  virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
+  virtual Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
   PartConstants constants_;
 
@@ -99,7 +99,7 @@ class PartEvaluation : public PartDescription {
   void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                            Inertia<P>& out, Counters& counters) const;
   /// Returns the undeformed position that the chain maps to p.
-  Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  Vec3<double> undeformed_point(const Vec3<double>& p, const ParameterValues<double>& values) const;
 };
 
 }  // namespace pliant

@@ -40,7 +40,7 @@ struct PrescribedMotion {
   /// Returns the mean velocity of the origin from t to t + h (s) and an upper estimate of the difference
   /// between this mean and the velocities of all points at most `reach` (m) away from the origin, both in
   /// m/s.
-  TimeVector::Passage over(double t, double h, double reach) const;
+  TimeVector::MeanRate over(double t, double h, double reach) const;
 };
 
 }  // namespace pliant

@@ -28,7 +28,7 @@ class Primitive final : public Part {
  public:
   /// density: kg/m^3 of a solid, kg/m^2 of a shell.
   explicit Primitive(std::string name, double density = 1000, GlobalDeform chain = {})
-      : Part(std::move(name), density, std::make_unique<ShapeFaceOf<Shape>>(), chain.links()),
+      : Part(std::move(name), density, std::make_unique<ShapeInterfaceOf<Shape>>(), chain.links()),
         chain_(std::move(chain)) {}
 
   /// Evaluates s, J, J q_s_dot and Jdot q_s_dot of a batch of material points at given values of all
@@ -60,7 +60,7 @@ class Primitive final : public Part {
     chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
   /// Applies the inverse of T to a position.
-  Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const override {
+  Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
   }
 

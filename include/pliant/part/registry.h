@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// Returns every shape, in the order of AllShapes.
-const std::vector<std::unique_ptr<ShapeFace>>& all_shapes();
+const std::vector<std::unique_ptr<ShapeInterface>>& all_shapes();
 
 struct DeformationInfo {
   const char* name;

@@ -50,7 +50,6 @@ inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCost
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-
 /// The assembly of one island.
 class Assembly {
  public:
@@ -232,7 +231,7 @@ class Assembly {
     const VecX<double>& lambda = group.correct(rows, x);
     if (lambda.size() > 0) penalty_ = std::max(penalty_, 2 * eps_ * lambda.lpNorm<Eigen::Infinity>());
     OneSidedRows<Eigen::Dynamic> one_sided(group);
-    one_sided.meet_all(x, [&](const OneSidedRow& row) { return bound(group, row); });
+    one_sided.satisfy_all(x, [&](const OneSidedRow& row) { return bound(group, row); });
     return x;
   }
 
@@ -378,7 +377,7 @@ PLIANT_INLINE AssemblyReport assemble(const Dynamics& dynamics, State& state) {
     assembly.gap();
     report.gap = std::max(report.gap, assembly.gap_in_metres());
   }
-  dynamics.model().note_limits(state);
+  dynamics.model().record_limits(state);
   return report;
 }
 

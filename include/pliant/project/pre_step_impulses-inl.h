@@ -150,7 +150,7 @@ class PreStep {
     const bool open = island_ != nullptr && close_joints_ahead(largest);
     OneSidedRows<Max> rows(group_);
     vectors_.joined = vectors_.x;
-    rows.meet_all(vectors_.x, [&](const OneSidedRow& row) { return min_velocity(row); });
+    rows.satisfy_all(vectors_.x, [&](const OneSidedRow& row) { return min_velocity(row); });
     if (!rows.empty())
       state_.work[static_cast<int>(Work::limits)] += kinetic_change(group_, vectors_.joined, vectors_.x);
     if (!open && rows.empty()) return false;

@@ -40,8 +40,8 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
   const auto at_nodes = [&](const VecX<double>& of, int first) {
     return Eigen::Map<const Nodes>(of.data() + first, local.n_nodes(), 3);
   };
-  const NodalDeformation::Unmet unmet =
-      local.unmet(at_nodes(state.q, m.q0 + 7), at_nodes(state.v, m.v0 + 6), *work.local);
+  const NodalDeformation::ConditionViolation violation =
+      local.violation(at_nodes(state.q, m.q0 + 7), at_nodes(state.v, m.v0 + 6), *work.local);
   const Vec<double, 6> inertia = work.local->H0.diagonal();
   const double size = m.part->size();
   const auto small = [&](const Vec<double, 6>& share) {
@@ -49,8 +49,8 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
   // K differs from H by at most sqrt(2) |sum m d s^T|, and by terms of the unmet conditions, which are small.
-  const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
-  return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
+  const bool regular = violation.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
+  return regular && small(violation.W_d) && small(state.h * violation.W_d_dot);
 }
 
 /// Throws NumericalFailure if the conditions no longer determine the frame of a part.
@@ -104,7 +104,7 @@ inline void project_frame(StepContext& step, std::size_t i) {
   u.resize(n, 3);
   local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
   for (int iteration = 0;; ++iteration) {
-    const VecMax<double> delta = now.solve_transposed(now.unmet);
+    const VecMax<double> delta = now.solve_transposed(now.violation);
     if (!(delta.head<3>().norm() > kFrameRounding * size || delta.tail(3 + m.n_s).norm() > kFrameRounding))
       break;
     if (iteration == kMaxFrameIterations) fail_to_follow(m, step);
@@ -120,14 +120,14 @@ inline void project_frame(StepContext& step, std::size_t i) {
     dynamics.evaluate_frame(state.q, state.v, part, work);
   }
   const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
-  share_of(m, state.v) = world_velocity(w, v_r);
+  part_velocities(m, state.v) = world_velocity(w, v_r);
   local.add_frame_velocities(v_r, -1, now, u.data(), state.v.data() + m.v0 + 6 + m.n_s);
 }
 
 }  // namespace projection
 
 PLIANT_INLINE void end_motion(StepContext& step) {
-  stop_inertialess(step.model(), step.work, step.state.v);
+  zero_inertialess_velocities(step.model(), step.work, step.state.v);
   normalise_rotations(step.model(), step.state.q);
   project_frames(step);
 }

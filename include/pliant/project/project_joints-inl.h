@@ -89,7 +89,7 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
     momentum.segment<3>(3) = to.R.transpose() * L;
     if (to.stiffening > 0) momentum.tail(m.n_s) += to.stiffening * (m.part->K_s() * from.v_r.tail(m.n_s));
     to.solve_mass(momentum);
-    share_of(m, state.v) = world_velocity(to, momentum);
+    part_velocities(m, state.v) = world_velocity(to, momentum);
   }
 }
 

@@ -198,7 +198,7 @@ class Projection {
       const bool open = correct_joints(Rows::velocities, i, x);
       joined = x;
       OneSidedRows<Max> rows(group_);
-      rows.meet_all(x, [&](const OneSidedRow& row) { return min_velocity(row, before); });
+      rows.satisfy_all(x, [&](const OneSidedRow& row) { return min_velocity(row, before); });
       if (!open && rows.empty()) break;
       joints += kinetic_change(group_, before, joined);
       one_sided += kinetic_change(group_, joined, x);
@@ -261,10 +261,10 @@ class Projection {
       x.setZero(group_.size());
       const bool open = correct_joints(Rows::coordinates, i, x);
       OneSidedRows<Max> rows(group_);
-      rows.meet_all(x, [&](const OneSidedRow& row) { return min_change(row); });
+      rows.satisfy_all(x, [&](const OneSidedRow& row) { return min_change(row); });
       if (!open && rows.empty()) return pushed;
       for (int p = 0; p < group_.parts(); ++p)
-        advance_with(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
+        advance_part_in_group(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
       evaluated_ = false;
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
@@ -300,7 +300,7 @@ class Projection {
     for_each_coordinates([&](const auto& stored, const auto& now) {
       const PartModel& m = group_.model(i++);
       const double size = m.part->size();
-      const auto v = share_of(m, std::as_const(state_.v));
+      const auto v = part_velocities(m, std::as_const(state_.v));
       correction +=
           (stored.template head<3>() - now.template head<3>()).squaredNorm() +
           4 * size * size * (stored.template segment<4>(3) - now.template segment<4>(3)).squaredNorm();

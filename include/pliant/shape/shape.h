@@ -8,8 +8,8 @@
 //   half_height(a)    h (metres), half the extent along z; deformations use zeta = z / h
 //   mesh              MeshPattern of the surface mesh
 //
-// Optional members. ShapeFaceOf (part/shape_face.h) has defaults for them. The closed form of a shape is
-// faster than the default of gauge and label, a Newton search, and exact at the poles.
+// Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. The closed form of a
+// shape is faster than the default of gauge and label, a Newton search, and exact at the poles.
 //   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; never
 //                     overflows
 //   label(x, a)       material point at the position x, the inverse of e; requires gauge

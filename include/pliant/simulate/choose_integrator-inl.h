@@ -60,7 +60,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
     } catch (const InvertedElement&) {
       return failed;
     }
-    const StepError error{method.take_error(), order, state.h};
+    const StepError error{method.pop_error(), order, state.h};
     return state.q.allFinite() && state.v.allFinite() ? error : failed;
   };
   StepContext start_of_trial(dynamics, state, work, counters);

@@ -77,12 +77,12 @@ class Sway {
     for (const Island& island : model_.islands()) {
       const Group<double, Eigen::Dynamic> group(model_, work_, island, false);
       group.gather(x, [&](int i) {
-        return body_velocity(group.workspace(i), share_of(group.model(i), std::as_const(all)));
+        return body_velocity(group.workspace(i), part_velocities(group.model(i), std::as_const(all)));
       });
       group.joint_rows(x, rows);
       group.correct(rows, x);
       for (int i = 0; i < group.parts(); ++i)
-        share_of(group.model(i), allowed) = world_velocity(group.workspace(i), group.share(x, i));
+        part_velocities(group.model(i), allowed) = world_velocity(group.workspace(i), group.share(x, i));
     }
     all = allowed;
   }
@@ -94,7 +94,8 @@ class Sway {
       for (const int i : island.parts) {
         const PartModel& m = model_.parts()[static_cast<std::size_t>(i)];
         const PartWorkspace<double>& w = work_.parts[static_cast<std::size_t>(i)];
-        const VecMax<double> a = body_velocity(w, share_of(m, x)), b = body_velocity(w, share_of(m, y));
+        const VecMax<double> a = body_velocity(w, part_velocities(m, x)),
+                             b = body_velocity(w, part_velocities(m, y));
         sum += a.dot(w.inertia.M * b);
       }
     return sum;

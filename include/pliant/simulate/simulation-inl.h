@@ -46,10 +46,10 @@ inline constexpr double kMinStep = 16 * std::numeric_limits<double>::epsilon();
 
 /// Throws std::invalid_argument if a tolerance is out of range.
 inline void require_tolerance(double tolerance) {
-  if (tolerance >= kLeastTolerance && tolerance <= kGreatestTolerance) return;
+  if (tolerance >= kMinTolerance && tolerance <= kMaxTolerance) return;
   std::ostringstream message;
-  message << "a tolerance of " << tolerance << "; expected a number from " << kLeastTolerance << " to "
-          << kGreatestTolerance;
+  message << "a tolerance of " << tolerance << "; expected a number from " << kMinTolerance << " to "
+          << kMaxTolerance;
   throw std::invalid_argument(message.str());
 }
 
@@ -254,15 +254,15 @@ PLIANT_INLINE StepError Simulation::try_step() {
   const long impacts = step_counters_.impacts;
   try {
     result.length = integrate();
-    const double error = integrator_->take_error();
+    const double error = integrator_->pop_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
     if (contact_ && result.error <= 1 && contact_->has_contact_error())
       estimate_contact_error(impacts, result);
   } catch (const StepFailure&) {
-    integrator_->take_error();
+    integrator_->pop_error();
     result.error = std::numeric_limits<double>::infinity();
   } catch (const InvertedElement&) {
-    integrator_->take_error();
+    integrator_->pop_error();
     result.error = std::numeric_limits<double>::infinity();
   }
   if (contact_ && !(result.error <= 1)) {
@@ -411,15 +411,15 @@ PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
 
 /// Records the velocities that had no inertia in the step.
 PLIANT_INLINE void Simulation::record_without_inertia() {
-  for (std::size_t i = 0; i < work_.held.size(); ++i) {
-    if (work_.held[i] == 0) continue;
+  for (std::size_t i = 0; i < work_.without_inertia.size(); ++i) {
+    if (work_.without_inertia[i] == 0) continue;
     const PartModel& m = model_.parts()[i];
     for (int k = 0; k < 6 + m.n_s; ++k)
-      if (work_.parts[i].held(k)) without_inertia_[static_cast<std::size_t>(m.v0 + k)] = true;
+      if (work_.parts[i].without_inertia(k)) without_inertia_[static_cast<std::size_t>(m.v0 + k)] = true;
   }
 }
 
-PLIANT_INLINE std::set<std::string> Simulation::held() const {
+PLIANT_INLINE std::set<std::string> Simulation::parameters_without_inertia() const {
   std::set<std::string> names;
   for (const PartModel& m : model_.parts())
     for (int k = 0; m.q0 >= 0 && k < 6 + m.n_s; ++k)

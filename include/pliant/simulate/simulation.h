@@ -75,7 +75,7 @@ class Simulation {
   Counters counters() const;
   /// Returns the names of the parameters ("part.parameter") that had no inertia at some step and were fixed
   /// in that step, and of such velocities of frames ("part.omega.x").
-  std::set<std::string> held() const;
+  std::set<std::string> parameters_without_inertia() const;
 
  private:
   template <class Advance>

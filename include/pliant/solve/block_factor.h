@@ -28,8 +28,8 @@ class BlockFactor {
     values_.assign(at(pattern.values()), S(0.0));
     pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// Sets a larger scale for the pivot of a row (see Pivots::measure_by).
-  void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
+  /// Sets a larger scale for the pivot of a row (see Pivots::raise_scale).
+  void raise_scale(int row, double entry) { pivots_.raise_scale(row, entry); }
   /// Returns the entries of a block, by columns. offset: from BlockPattern::place.
   S* block(int offset) { return values_.data() + offset; }
 
@@ -92,7 +92,7 @@ class BlockFactor {
   }
 
   /// Returns whether a row, in the order of the nodes, depends on others and is excluded.
-  bool held(int row) const { return pivots_.held(row); }
+  bool excluded(int row) const { return pivots_.excluded(row); }
   /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
   /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost.
@@ -198,7 +198,7 @@ class BlockFactor {
       for (int i = 0; i < rows; ++i) x[i] = B[k * rows + i];
       for (int m = 0; m < k; ++m)
         for (int i = 0; i < rows; ++i) x[i] -= X[m * rows + i] * A[m * n + k];
-      if (pivots_.held(c.row + k))
+      if (pivots_.excluded(c.row + k))
         for (int i = 0; i < rows; ++i) x[i] = S(0.0);
       const S inverse = pivots_.inverse(c.row + k);
       for (int i = 0; i < rows; ++i) B[k * rows + i] = x[i] * inverse;

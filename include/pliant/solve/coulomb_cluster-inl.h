@@ -22,11 +22,11 @@ namespace detail {
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
 /// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
 /// Point masses are many and weakly coupled.
-inline constexpr double kSweepExactOfPoints = 1e-6;
+inline constexpr double kSweepExactOfPointMasses = 1e-6;
 /// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation (0: no
 /// extrapolation).
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
-inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
+inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPointMasses{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
 inline constexpr double kSweepWorse = 4;
 /// Relative regularisation of the extrapolation, in case that sweeps are linearly dependent.
@@ -71,11 +71,11 @@ PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, 
       number_(number),
       contacts_(system.order_.data() + system.clusters_[at(number)]),
       size_(system.clusters_[at(number) + 1] - system.clusters_[at(number)]),
-      enough_(enough),
+      tolerance_(enough),
       scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
-    for (int s = point(i).first_side; s < point(i).last_side; ++s)
-      has_points_ = has_points_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
+    for (int s = contact(i).first_side; s < contact(i).last_side; ++s)
+      has_point_masses_ = has_point_masses_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
 }
 
 /// Computes scale_, exact_ and acceptable_. The present velocities must be those without impulses.
@@ -84,51 +84,51 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
   scale_ = 0;
   for (int i = 0; i < size_; ++i) {
     scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
-    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+    for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
       terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
     }
   }
-  exact_ = std::max({(has_points_ ? detail::kSweepExactOfPoints : detail::kSweepExact) * scale_,
-                     detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
+  exact_ = std::max({(has_point_masses_ ? detail::kSweepExactOfPointMasses : detail::kSweepExact) * scale_,
+                     detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, tolerance_});
   acceptable_ =
-      std::max(exact_, (has_points_ || size_ > detail::kManyContacts ? detail::kAcceptableOfManyContacts
-                                                                     : detail::kAcceptableResidual) *
+      std::max(exact_, (has_point_masses_ || size_ > detail::kManyContacts ? detail::kAcceptableOfManyContacts
+                                                                           : detail::kAcceptableResidual) *
                            scale_);
 }
 
 /// Sets the compliance of all contacts. softness: as a fraction of the diagonal of W.
-PLIANT_INLINE void CoulombCluster::soften(double softness) {
-  softness_ = softness;
+PLIANT_INLINE void CoulombCluster::set_compliance(double softness) {
+  compliance_ = softness;
   for (int i = 0; i < size_; ++i) {
-    Mat3<double> W = point(i).W;
+    Mat3<double> W = contact(i).W;
     W.diagonal() *= 1 + softness;
-    point(i).law = CoulombLaw(W, point(i).rows == 1 ? 0 : point(i).mu);
+    contact(i).law = CoulombLaw(W, contact(i).rows == 1 ? 0 : contact(i).mu);
   }
 }
 
 /// Returns the velocity u of contact i, plus its compliance times its impulse.
 PLIANT_INLINE Vec3<double> CoulombCluster::velocity(int i) const {
   Vec3<double> u = system_.velocity_at(contacts_[i], system_.used_sides_, system_.x_);
-  if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
+  if (compliance_ > 0) u += compliance_ * contact(i).W.diagonal().cwiseProduct(p(i));
   return u;
 }
 
 /// Returns the impulse that satisfies the law of contact i alone. u: the velocity with its present impulse.
 PLIANT_INLINE Vec3<double> CoulombCluster::law_impulse(int i, const Vec3<double>& u) const {
-  const Mat3<double>& W = point(i).W;
-  if (point(i).rows == 1) return {std::max(0.0, p(i)[0] - u[0] / ((1 + softness_) * W(0, 0))), 0, 0};
+  const Mat3<double>& W = contact(i).W;
+  if (contact(i).rows == 1) return {std::max(0.0, p(i)[0] - u[0] / ((1 + compliance_) * W(0, 0))), 0, 0};
   Vec3<double> b = u - W * p(i);
-  if (softness_ > 0) b -= softness_ * W.diagonal().cwiseProduct(p(i));
-  return point(i).law.impulse(b);
+  if (compliance_ > 0) b -= compliance_ * W.diagonal().cwiseProduct(p(i));
+  return contact(i).law.impulse(b);
 }
 
 /// Adds dp to the impulse of contact i and updates the velocities of the movers.
 PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   p(i) += dp;
-  for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+  for (int r = contact(i).first_push; r < contact(i).last_push; ++r) {
     const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
     const double* Y = system_.numbers_.data() + term.numbers;
     if (term.size == 3)
@@ -146,7 +146,7 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
 PLIANT_INLINE double CoulombCluster::exact_level() const {
   double largest = 0;
   for (int i = 0; i < size_; ++i)
-    largest = std::max(largest, point(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
+    largest = std::max(largest, contact(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
   return std::max(
       exact_, std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
 }
@@ -160,7 +160,7 @@ PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
     if (is_fixed(i)) continue;
     const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
     add_impulse(i, dp);
-    change = std::max(change, (point(i).W * dp).lpNorm<Eigen::Infinity>());
+    change = std::max(change, (contact(i).W * dp).lpNorm<Eigen::Infinity>());
   }
   return change;
 }
@@ -174,7 +174,7 @@ PLIANT_INLINE double CoulombCluster::residual() const {
       continue;
     }
     const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
-    worst = std::max(worst, (point(i).W * dp).lpNorm<Eigen::Infinity>());
+    worst = std::max(worst, (contact(i).W * dp).lpNorm<Eigen::Infinity>());
   }
   return worst;
 }
@@ -188,7 +188,7 @@ PLIANT_INLINE void CoulombCluster::copy_impulses(VecX<double>& impulses) const {
 /// Sets all impulses to zero, and the velocities to those without impulses.
 PLIANT_INLINE void CoulombCluster::clear_impulses() {
   for (int i = 0; i < size_; ++i)
-    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+    for (int r = contact(i).first_push; r < contact(i).last_push; ++r) {
       const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
       system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
     }
@@ -211,7 +211,7 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
   VecX<double>& best = scratch_.best;
   weight.resize(n);  // scale of each impulse to a velocity
   for (int i = 0; i < size_; ++i)
-    weight.segment<3>(3 * i).setConstant(std::max(point(i).W(0, 0), std::numeric_limits<double>::min()));
+    weight.segment<3>(3 * i).setConstant(std::max(contact(i).W(0, 0), std::numeric_limits<double>::min()));
   if (dr.rows() < n || dr.cols() < history) {
     dr.resize(std::max(n, dr.rows()), std::max<Eigen::Index>(history, dr.cols()));
     dp.resizeLike(dr);
@@ -265,7 +265,7 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
 /// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with point
 /// masses need no warm start, because point masses are weakly coupled.
 PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
-  return size_ > 1 && !has_points_;
+  return size_ > 1 && !has_point_masses_;
 }
 
 /// Tries Newton's method from a warm start. Returns whether it found the solution; otherwise clears all
@@ -282,15 +282,17 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.
   const bool many = size_ > detail::kManyContacts;
-  const auto* first = has_points_ ? detail::kSweepRoundsOfPoints.begin() : detail::kSweepRounds.begin();
-  const auto* last = has_points_ ? detail::kSweepRoundsOfPoints.end() : detail::kSweepRounds.end();
+  const auto* first =
+      has_point_masses_ ? detail::kSweepRoundsOfPointMasses.begin() : detail::kSweepRounds.begin();
+  const auto* last = has_point_masses_ ? detail::kSweepRoundsOfPointMasses.end() : detail::kSweepRounds.end();
   double before = std::numeric_limits<double>::infinity();
   VecX<double> previous;  // the impulses of the previous round
   for (const auto* round = first; round != last; ++round) {
     const auto& [max_sweeps, history] = *round;
     if (many && history == 0) continue;  // too slow, as is Newton's method for many point masses
-    if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_points_ && residual() <= exact_)) return true;
-    if (!(many && has_points_) && newton(false)) return true;
+    if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_point_masses_ && residual() <= exact_))
+      return true;
+    if (!(many && has_point_masses_) && newton(false)) return true;
     const double error = residual();
     if (error <= detail::kAcceptableResidual * scale_ && error > detail::kSweepStalled * before) {
       if (error > before) set_impulses(previous);
@@ -306,7 +308,7 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
 /// fails, for instance because joints and contacts contradict each other, it is repeated with compliant
 /// contacts, for which a solution exists. kCompliantPreference decides between the two results.
 PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
-  soften(0);
+  set_compliance(0);
   if (size_ == 1) {
     clear_impulses();
     set_scale();
@@ -326,9 +328,9 @@ PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
     ++result.fallbacks;
     copy_impulses(found);
     clear_impulses();
-    soften(detail::kContactCompliance);
+    set_compliance(detail::kContactCompliance);
     search(result.sweeps);
-    soften(0);
+    set_compliance(0);
     const double compliant = residual();
     if (compliant < detail::kCompliantPreference * error)
       error = compliant;
@@ -336,7 +338,7 @@ PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
       set_impulses(found);
   }
   result.residual = std::max(result.residual, error);
-  for (int i = 0; i < size_; ++i) point(i).warm_start = may_warm_start();
+  for (int i = 0; i < size_; ++i) contact(i).warm_start = may_warm_start();
 }
 
 }  // namespace pliant

@@ -66,14 +66,14 @@ class CoulombCluster {
   void solve(CoulombResult& result);
 
  private:
-  using Point = CoulombSystem::Point;
-  Point& point(int i) { return system_.contacts_[at(contacts_[i])]; }
-  const Point& point(int i) const { return system_.contacts_[at(contacts_[i])]; }
+  using Contact = CoulombSystem::Contact;
+  Contact& contact(int i) { return system_.contacts_[at(contacts_[i])]; }
+  const Contact& contact(int i) const { return system_.contacts_[at(contacts_[i])]; }
   Vec3<double>& p(int i) { return system_.p_[at(contacts_[i])]; }
   const Vec3<double>& p(int i) const { return system_.p_[at(contacts_[i])]; }
-  bool is_fixed(int i) const { return point(i).first_push == point(i).last_push; }
+  bool is_fixed(int i) const { return contact(i).first_push == contact(i).last_push; }
   void set_scale();
-  void soften(double softness);
+  void set_compliance(double softness);
   Vec3<double> velocity(int i) const;
   Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
   void add_impulse(int i, const Vec3<double>& dp);
@@ -96,13 +96,13 @@ class CoulombCluster {
   int number_;
   const int* contacts_;
   int size_;
-  double enough_;
+  double tolerance_;
   CoulombScratch& scratch_;
-  bool has_points_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
-  double scale_ = 0;         // the largest contact velocity without impulses
-  double exact_ = 0;         // residuals up to this velocity are rounding
-  double acceptable_ = 0;    // residuals up to this velocity are acceptable
-  double softness_ = 0;      // compliance of all contacts, as a fraction of the diagonal of W
+  bool has_point_masses_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
+  double scale_ = 0;               // the largest contact velocity without impulses
+  double exact_ = 0;               // residuals up to this velocity are rounding
+  double acceptable_ = 0;          // residuals up to this velocity are acceptable
+  double compliance_ = 0;          // compliance of all contacts, as a fraction of the diagonal of W
 };
 
 }  // namespace pliant

@@ -32,11 +32,11 @@ inline constexpr double kMaxContactFill = 10;
 inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
 /// Weight of the proximal term, which keeps linearly dependent impulses near their present values. In each
 /// step it is multiplied by kProximalFactor, from kFirstProximal (kProximalNear for warm starts) down to
-/// kMinProximal, below which rounding outweighs the gain. The values ...OfPoints are for clusters with point
-/// masses.
+/// kMinProximal, below which rounding outweighs the gain. The values ...OfPointMasses are for clusters with
+/// point masses.
 inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8,
                         kProximalNear = 1e-5;
-inline constexpr double kProximalFactorOfPoints = 0.7, kMinProximalOfPoints = 1e-5;
+inline constexpr double kProximalFactorOfPointMasses = 0.7, kMinProximalOfPointMasses = 1e-5;
 /// After this number of steps without progress, a residual above kFutileFarOff times the best one resets the
 /// impulses to the best ones, and the proximal weight grows by kProximalGrowth.
 inline constexpr int kMaxFutileNewton = 4;
@@ -63,8 +63,8 @@ PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
   drop.clear();
   for (int i = 0; i < size_; ++i) {
     const Vec3<double> u = velocity(i);
-    const double r = 1 / point(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0],
-                 radius = point(i).mu * ahead;
+    const double r = 1 / contact(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0],
+                 radius = contact(i).mu * ahead;
     if (is_fixed(i) || !(ahead > 0)) {
       drop.push_back({i, -p(i)});
       continue;
@@ -76,7 +76,7 @@ PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
     law.D = proximal * Mat3<double>::Identity();
     law.F = r * u;
     const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
-    if (point(i).rows == 1 || radius == 0) {  // a normal impulse without friction
+    if (contact(i).rows == 1 || radius == 0) {  // a normal impulse without friction
       drop.push_back({i, {0, -p(i)[1], -p(i)[2]}});
       law.T.bottomRows<2>().setZero();
       law.F.tail<2>().setZero();
@@ -84,13 +84,13 @@ PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
       const Eigen::Vector2d e = pull.normalized();
       const Eigen::Matrix2d tangential =
           radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
-      law.T.block<2, 1>(1, 0) = r * point(i).mu * e;
+      law.T.block<2, 1>(1, 0) = r * contact(i).mu * e;
       law.T.block<2, 2>(1, 1) = r * tangential;
-      law.D.block<2, 1>(1, 0) = -point(i).mu * e;
+      law.D.block<2, 1>(1, 0) = -contact(i).mu * e;
       law.D.block<2, 2>(1, 1) += Eigen::Matrix2d::Identity() - tangential;
       law.F.tail<2>() = p(i).tail<2>() - radius * e;
     }
-    if (softness_ > 0) law.D += softness_ * law.T * point(i).W.diagonal().asDiagonal();
+    if (compliance_ > 0) law.D += compliance_ * law.T * contact(i).W.diagonal().asDiagonal();
     open.push_back(law);
   }
 }
@@ -104,7 +104,7 @@ PLIANT_INLINE void CoulombCluster::solve_linear(MoverSystem& movers) {
   using Y = Eigen::Map<const MatX<double>>;
   movers.clear();
   for (LinearContactLaw& law : scratch_.linear.open) {
-    const Point& contact_at = point(law.contact);
+    const Contact& contact_at = contact(law.contact);
     const Mat3<double> inverse = law.D.inverse();
     law.F = (inverse * law.F).eval();
     law.T = (inverse * law.T).eval();
@@ -132,7 +132,7 @@ PLIANT_INLINE void CoulombCluster::solve_linear(MoverSystem& movers) {
   }
   movers.solve();
   for (LinearContactLaw& law : scratch_.linear.open) {
-    const Point& contact_at = point(law.contact);
+    const Contact& contact_at = contact(law.contact);
     Vec3<double> du = Vec3<double>::Zero();
     for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
       const int row = coupling.side_rows[at(s)];
@@ -160,7 +160,7 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
   if (!movers.empty()) return movers.is_ordered() ? &movers : nullptr;
   bool too_large = false;
   for (int i = 0; i < size_; ++i)
-    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+    for (int r = contact(i).first_push; r < contact(i).last_push; ++r) {
       const int mover = system_.used_pushes_[at(r)].mover;
       int& number = coupling.numbers[at(mover)];
       if (number >= 0) continue;
@@ -171,11 +171,11 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
   if (too_large) return nullptr;
   auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
-    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+    for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const int column = number_at(side);
       if (column < 0) continue;
-      for (int r = point(i).first_push; r < point(i).last_push; ++r)
+      for (int r = contact(i).first_push; r < contact(i).last_push; ++r)
         act(number_at(system_.used_pushes_[at(r)]), column, side);
     }
   };
@@ -194,9 +194,9 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
       block.first += at(in_mover(side) * block.stride);
       coupling.blocks.push_back(block);
     });
-    for (int r = point(i).first_push; r < point(i).last_push; ++r)
+    for (int r = contact(i).first_push; r < contact(i).last_push; ++r)
       coupling.push_rows[at(r)] = movers.row(number_at(system_.used_pushes_[at(r)]));
-    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+    for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       if (const int number = number_at(side); number >= 0)
         coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
@@ -218,8 +218,8 @@ PLIANT_INLINE bool CoulombCluster::newton(bool near) {
   VecX<double>& best = scratch_.best;
   copy_impulses(best);
   double proximal = near ? detail::kProximalNear : detail::kFirstProximal,
-         min_proximal = has_points_ ? detail::kMinProximalOfPoints : detail::kMinProximal;
-  const double factor = has_points_ ? detail::kProximalFactorOfPoints : detail::kProximalFactor;
+         min_proximal = has_point_masses_ ? detail::kMinProximalOfPointMasses : detail::kMinProximal;
+  const double factor = has_point_masses_ ? detail::kProximalFactorOfPointMasses : detail::kProximalFactor;
   int futile = 0;
   for (int step = 0; step < (near ? detail::kMaxContactNewtonNear : detail::kMaxContactNewton) &&
                      best_error > beyond * exact;

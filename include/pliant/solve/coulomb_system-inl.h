@@ -26,12 +26,12 @@ PLIANT_INLINE int CoulombSystem::add_mover(int size) {
 }
 
 PLIANT_INLINE void CoulombSystem::begin_contact(int rows, double mu) {
-  Point point;
-  point.rows = rows;
-  point.mu = mu;
-  point.first_side = point.last_side = static_cast<int>(sides_.size());
-  point.first_push = point.last_push = static_cast<int>(pushes_.size());
-  contacts_.push_back(point);
+  Contact contact;
+  contact.rows = rows;
+  contact.mu = mu;
+  contact.first_side = contact.last_side = static_cast<int>(sides_.size());
+  contact.first_push = contact.last_push = static_cast<int>(pushes_.size());
+  contacts_.push_back(contact);
   p_.push_back(Vec3<double>::Zero());
 }
 
@@ -89,9 +89,9 @@ PLIANT_INLINE Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x)
 
 PLIANT_INLINE Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& terms,
                                                       const VecX<double>& x) const {
-  const Point& point = contacts_[at(k)];
-  Vec3<double> u = point.c;
-  for (int s = point.first_side; s < point.last_side; ++s) {
+  const Contact& contact = contacts_[at(k)];
+  Vec3<double> u = contact.c;
+  for (int s = contact.first_side; s < contact.last_side; ++s) {
     const Term& side = terms[at(s)];
     const double* J = numbers_.data() + side.numbers;
     if (side.size == 3)
@@ -121,10 +121,10 @@ PLIANT_INLINE void CoulombSystem::add_change_to(int k, double factor, const std:
 PLIANT_INLINE void CoulombSystem::complete() {
   complete_ = true;
   for (int k = 0; k < size(); ++k) {
-    Point& point = contacts_[at(k)];
+    Contact& contact = contacts_[at(k)];
     const Mat3<double> W = effect(k, k);
-    point.W = 0.5 * (W + W.transpose());
-    point.W.diagonal().array() += detail::kContactRegularisation * point.W.diagonal().maxCoeff();
+    contact.W = 0.5 * (W + W.transpose());
+    contact.W.diagonal().array() += detail::kContactRegularisation * contact.W.diagonal().maxCoeff();
   }
   select_used();
   find_clusters();
@@ -175,16 +175,16 @@ PLIANT_INLINE void CoulombSystem::find_clusters() {
   DisjointSets tied(movers_.size() - 1);
   std::vector<int> mover(contacts_.size());
   for (int k = 0; k < size(); ++k) {
-    const Point& point = contacts_[at(k)];
+    const Contact& contact = contacts_[at(k)];
     if (sides(k) == 0) continue;
-    mover[at(k)] = sides_[at(point.first_side)].mover;
-    for (int s = point.first_side + 1; s < point.last_side; ++s)
+    mover[at(k)] = sides_[at(contact.first_side)].mover;
+    for (int s = contact.first_side + 1; s < contact.last_side; ++s)
       tied.unite(mover[at(k)], sides_[at(s)].mover);
   }
   order_.clear();
   for (int k = 0; k < size(); ++k)
     if (sides(k) > 0) {
-      mover[at(k)] = tied.leader(mover[at(k)]);
+      mover[at(k)] = tied.root(mover[at(k)]);
       order_.push_back(k);
     }
   std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) { return mover[at(i)] < mover[at(j)]; });

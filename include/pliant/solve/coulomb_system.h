@@ -99,7 +99,7 @@ class CoulombSystem {
     std::size_t numbers;
   };
   /// A contact.
-  struct Point {
+  struct Contact {
     int rows = 3, first_side = 0, last_side = 0, first_push = 0, last_push = 0;
     double mu = 0;
     Vec3<double> c = Vec3<double>::Zero();
@@ -116,7 +116,7 @@ class CoulombSystem {
   void add_change_to(int k, double factor, const std::vector<Term>& terms, VecX<double>& x) const;
 
   std::vector<int> movers_{0};  // first velocity of each mover in x, and the end
-  std::vector<Point> contacts_;
+  std::vector<Contact> contacts_;
   std::vector<Term> sides_, pushes_;
   std::vector<double> numbers_;  // the entries of all terms
   std::vector<Vec3<double>> p_;

@@ -30,7 +30,7 @@ enum class RankRule {
 template <class S>
 class Pivots {
  public:
-  /// Size relative to its scale (set_entry, measure_by) at or below which a pivot vanishes: by
+  /// Size relative to its scale (set_entry, raise_scale) at or below which a pivot vanishes: by
   /// RankRule::decide, and by the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
 
@@ -42,16 +42,16 @@ class Pivots {
     smallest_ = 1;
     entry_.resize(at(rows));
     inverse_.resize(at(rows));
-    if (!keep_) held_.assign(at(rows), 0);
+    if (!keep_) excluded_.assign(at(rows), 0);
     measures_.clear();
   }
   /// Sets a larger scale for the pivot of a row, for a row whose diagonal entry is a difference of larger
   /// numbers.
-  void measure_by(int row, double entry) { measures_.push_back({row, entry}); }
+  void raise_scale(int row, double entry) { measures_.push_back({row, entry}); }
 
   /// Sets the scale of the pivot of a row: its diagonal entry before the elimination.
   void set_entry(int row, const S& entry) { entry_[at(row)] = plain(entry); }
-  /// Applies the larger scales of measure_by(). Call it after set_entry() of all rows.
+  /// Applies the larger scales of raise_scale(). Call it after set_entry() of all rows.
   void apply_measures() {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
   }
@@ -61,8 +61,8 @@ class Pivots {
     const double scale = entry_[at(row)], value = plain(pivot);
     // A scale that is not finite excludes no row; the check of the solution for finite numbers detects such a
     // scale.
-    if ((keep_ && held(row)) || (std::isfinite(scale) && !(value > vanished_ * scale))) {
-      held_[at(row)] = 1;
+    if ((keep_ && excluded(row)) || (std::isfinite(scale) && !(value > vanished_ * scale))) {
+      excluded_[at(row)] = 1;
       inverse_[at(row)] = S(0.0);
       return false;
     }
@@ -74,9 +74,9 @@ class Pivots {
   /// Returns 1 / pivot, or 0 for an excluded row.
   const S& inverse(int row) const { return inverse_[at(row)]; }
   /// Returns whether a row is excluded.
-  bool held(int row) const { return held_[at(row)] != 0; }
+  bool excluded(int row) const { return excluded_[at(row)] != 0; }
   /// Returns the number of rows that are not excluded.
-  int rank() const { return static_cast<int>(std::count(held_.begin(), held_.end(), 0)); }
+  int rank() const { return static_cast<int>(std::count(excluded_.begin(), excluded_.end(), 0)); }
   /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost in the
   /// elimination.
   double smallest() const { return smallest_; }
@@ -90,7 +90,7 @@ class Pivots {
   std::vector<S> inverse_;
   std::vector<double> entry_;
   std::vector<Measure> measures_;
-  std::vector<std::uint8_t> held_;
+  std::vector<std::uint8_t> excluded_;
   double smallest_ = 1, vanished_ = kVanished;
   bool keep_ = false;
 };

@@ -23,7 +23,7 @@ class SymmetricFactor {
   template <class Matrix>
   void compute(const Matrix& A, const VecX<double>& floor) {
     n_ = static_cast<int>(A.rows());
-    held_.reset();
+    excluded_.reset();
     rows_.resize(n_ * (n_ + 1) / 2);
     S* L = rows_.data();
     for (int i = 0; i < n_; L += ++i) {
@@ -31,7 +31,7 @@ class SymmetricFactor {
       for (int j = 0; j < i; row_j += ++j) {
         S sum = A(i, j);
         for (int k = 0; k < j; ++k) sum -= L[k] * row_j[k];
-        L[j] = held(j) ? S(0.0) : sum;  // L_ij D_j
+        L[j] = excluded(j) ? S(0.0) : sum;  // L_ij D_j
       }
       S d = A(i, i);
       const S* diagonal = rows_.data();
@@ -45,7 +45,7 @@ class SymmetricFactor {
       const bool vanished = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
       L[i] = vanished ? S(1.0) : S(1.0) / d;
       if (!vanished) continue;
-      held_.set(static_cast<std::size_t>(i));
+      excluded_.set(static_cast<std::size_t>(i));
       for (int k = 0; k < i; ++k) L[k] = S(0.0);
     }
   }
@@ -61,7 +61,7 @@ class SymmetricFactor {
     const S* L = rows_.data();
     for (int i = 0; i < n_; L += ++i) {
       std::array<S, Columns> sum{};
-      for (int c = 0; c < Columns; ++c) sum[c] = held(i) ? S(0.0) : x[c * n_ + i];
+      for (int c = 0; c < Columns; ++c) sum[c] = excluded(i) ? S(0.0) : x[c * n_ + i];
       for (int k = 0; k < i; ++k)
         for (int c = 0; c < Columns; ++c) sum[c] -= L[k] * x[c * n_ + k];
       for (int c = 0; c < Columns; ++c) x[c * n_ + i] = sum[c];
@@ -77,15 +77,15 @@ class SymmetricFactor {
   }
 
   /// Returns whether coordinate i is excluded.
-  bool held(int i) const { return held_.test(static_cast<std::size_t>(i)); }
-  bool any_held() const { return held_.any(); }
+  bool excluded(int i) const { return excluded_.test(static_cast<std::size_t>(i)); }
+  bool any_excluded() const { return excluded_.any(); }
 
  private:
   int n_ = 0;
   /// L by rows, with 1 / D_i in place of the unit diagonal. The array is on the heap, so that the workspaces
   /// of the parts of a chain are close together in memory.
   VecX<S> rows_;
-  std::bitset<kMaxVelocities> held_;
+  std::bitset<kMaxVelocities> excluded_;
 };
 
 }  // namespace pliant

@@ -68,7 +68,7 @@ void MeshFinder::each_pair(const State& state, const std::map<int, Thing>& all, 
   for (const auto& [i, j] : pairs) {
     const Thing &one = *things[at(i)], &other = *things[at(j)];
     if ((!deforms_locally(one.part) && !deforms_locally(other.part)) ||
-        (model_->lies_still(state, one.part) && model_->lies_still(state, other.part)) ||
+        (model_->is_motionless(state, one.part) && model_->is_motionless(state, other.part)) ||
         (one.c - other.c).norm() > one.reach + other.reach)
       continue;
     const ContactRule rule = rules_.of_parts(one.part, other.part);
@@ -150,7 +150,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
       contact.x = m.x.col(k);
       contact.normal = plane.normal;
       contact.gap = height[k];
-      contact.carried = {moving[0].d, moving[1].d, moving[2].d};
+      contact.prescribed_velocity = {moving[0].d, moving[1].d, moving[2].d};
       contact.friction = on.rule.friction;
       contact.restitution = on.rule.restitution;
       found.push_back(contact);
@@ -161,7 +161,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     if (!model_->body().contact.obstacles[on.obstacle].acts_before(t) || sleeps(state, on.part)) continue;
     touches.clear();
     const BoundingBall& ball = balls.at(on.part);
-    if (!on.mesh->comes_near(ball.c, ball.reach)) continue;
+    if (!on.mesh->is_within(ball.c, ball.reach)) continue;
     const PlacedMesh& m = mesh_of(on.part);
     find_touches(m, *on.mesh, kMaxDepthInObstacle * m.mesh->thickness(), touches);
     for (const MeshTouch& touch : touches) {
@@ -181,7 +181,8 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     const PlacedMesh &a = mesh_of(one.part), &b = mesh_of(other.part);
     find_touches(a, b, touches);
     auto add = [&](Contact contact) {
-      contact.carried = frame_velocity(other.part, t, contact.x) - frame_velocity(one.part, t, contact.x);
+      contact.prescribed_velocity =
+          frame_velocity(other.part, t, contact.x) - frame_velocity(one.part, t, contact.x);
       contact.friction = rule.friction;
       contact.restitution = rule.restitution;
       found.push_back(contact);
@@ -231,8 +232,8 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
       swept.reach +=
           swept.travel + swept.travel_change + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
     } else if (m.motion != nullptr) {
-      const TimeVector::Passage passage = m.motion->over(t, h, swept.reach);
-      swept.travel = h * (passage.rate.norm() + passage.beside);
+      const TimeVector::MeanRate mean = m.motion->over(t, h, swept.reach);
+      swept.travel = h * (mean.rate.norm() + mean.max_deviation);
       swept.reach += swept.travel;
     }
     all.emplace(part, swept);
@@ -245,24 +246,24 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     if (!(plane.normal.dot(a.c) - plane.highest(t, h) < a.reach)) continue;
     near.soft = true;
     // A half space has no thickness to pass through, but a plane may oscillate.
-    near.limit_travel(h * plane.point.over(t, h).beside, 0, kMaxStepShare * meshes_.at(on.part).thickness(),
-                      h, after != nullptr);
+    near.limit_travel(h * plane.point.over(t, h).max_deviation, 0,
+                      kMaxStepShare * meshes_.at(on.part).thickness(), h, after != nullptr);
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
     if ((!obstacle.acts_before(t) && !obstacle.acts_before(t + h)) || sleeps(state, on.part)) continue;
     const Swept& a = all.at(on.part);
-    if (!on.mesh->comes_near(a.c, a.reach)) continue;
+    if (!on.mesh->is_within(a.c, a.reach)) continue;
     near.soft = true;
     near.limit_travel(a.travel, a.travel_change + a.fall.norm(),
                       kMaxStepShare * meshes_.at(on.part).thickness(), h, after != nullptr);
   }
   each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
     near.soft = true;
-    const double thin = ContactFinder::kMaxTravelShare *
-                        std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
-    near.limit_travel(a.travel + b.travel, a.travel_change + b.travel_change + (a.fall - b.fall).norm(), thin,
-                      h, after != nullptr);
+    const double allowed_travel = ContactFinder::kMaxTravelShare *
+                                  std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
+    near.limit_travel(a.travel + b.travel, a.travel_change + b.travel_change + (a.fall - b.fall).norm(),
+                      allowed_travel, h, after != nullptr);
   });
   near.empty = near.empty && !near.soft;
 }

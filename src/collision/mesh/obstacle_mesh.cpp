@@ -235,7 +235,7 @@ Vec3<double> ObstacleMesh::nearest(int triangle, const Vec3<double>& x) const {
   return best;
 }
 
-bool ObstacleMesh::comes_near(const Vec3<double>& x, double distance) const {
+bool ObstacleMesh::is_within(const Vec3<double>& x, double distance) const {
   if (box().squaredExteriorDistance(x) > distance * distance) return false;
   std::vector<int> near;
   query({(x.array() - distance).matrix(), (x.array() + distance).matrix()}, near);

@@ -89,7 +89,7 @@ void step_to(Simulation& simulation, double until, double step) {
 }  // namespace
 
 void require_better_run(const Scene& scene) {
-  if (!(scene.tolerance > 0) || scene.tolerance > kLeastTolerance) return;
+  if (!(scene.tolerance > 0) || scene.tolerance > kMinTolerance) return;
   std::ostringstream message;
   message << "the error of a run with the tolerance " << scene.tolerance
           << " cannot be estimated, because no run is more accurate; choose a larger tolerance";
@@ -100,7 +100,7 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
                              int threads, Progress& progress) {
   require_better_run(scene);
   ErrorEstimate error;
-  error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
+  error.tolerance = scene.tolerance > 0 ? std::max(kMinTolerance, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
   // The tolerance does not control the error of resting contacts of many bodies, so the longest contact step
   // is halved.

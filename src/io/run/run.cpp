@@ -152,13 +152,13 @@ void Run::list_files() {
 void Run::begin_recording() {
   record_.build = build_info();
   record_.scene_hash = scene_->hash;
-  record_.asked_step = scene_->tolerance > 0 ? 0 : scene_->step;
+  record_.requested_step = scene_->tolerance > 0 ? 0 : scene_->step;
   record_.tolerance = scene_->tolerance;
   record_.step = schedule_.step();
   record_.frame_rate = scene_->frame_rate;
   record_.integrator = simulation_->integrator().name();
-  record_.asked_integrator = scene_->integrator;
-  if (schedule_.step() != record_.asked_step) {
+  record_.requested_integrator = scene_->integrator;
+  if (schedule_.step() != record_.requested_step) {
     note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
          number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
   }
@@ -192,10 +192,10 @@ void Run::check_resumable() const {
   }
   if (record_.scene_hash != scene_->hash)
     throw RecordingMismatch("cannot resume this run: the scene, its meshes or its --set values have changed");
-  require_same("the integrator", record_.asked_integrator, scene_->integrator);
+  require_same("the integrator", record_.requested_integrator, scene_->integrator);
   require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
   require_same("the tolerance", record_.tolerance, scene_->tolerance);
-  if (scene_->tolerance == 0) require_same("the step", record_.asked_step, scene_->step);
+  if (scene_->tolerance == 0) require_same("the step", record_.requested_step, scene_->step);
 }
 
 /// Sets the simulation to the last recorded state that an uninterrupted run would reach. keep: on call, the
@@ -274,12 +274,12 @@ void Run::note_turns() {
   for (const PartModel& m : simulation_->model().parts()) {
     if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || reported_turned_.count(m.part->name()) > 0) continue;
     const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
-    if (!(turn > kMostLinearTurn)) continue;
+    if (!(turn > kMaxLinearRotation)) continue;
     reported_turned_.insert(m.part->name());
     note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
          m.part->name() + "' rotate some of its surface by " + rounded_text(turn) +
          " rad; a local law that is linear in the displacements is accurate up to about " +
-         rounded_text(kMostLinearTurn) +
+         rounded_text(kMaxLinearRotation) +
          " rad; use a law that is valid for all rotations (neo_hookean, st_venant_kirchhoff, corotated, "
          "neo_hookean_membrane, st_venant_kirchhoff_membrane)");
   }
@@ -347,9 +347,10 @@ void Run::write_record() {
   const std::vector<double>& rested = simulation_->state().at_rest;
   record_.asleep =
       static_cast<int>(std::count_if(rested.begin(), rested.end(), [](double time) { return time < 0; }));
-  for (const std::string& held : simulation_->held())
-    if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end())
-      record_.held.push_back(held);
+  for (const std::string& name : simulation_->parameters_without_inertia())
+    if (std::find(record_.parameters_without_inertia.begin(), record_.parameters_without_inertia.end(),
+                  name) == record_.parameters_without_inertia.end())
+      record_.parameters_without_inertia.push_back(name);
   write_run_record(*folder_ / kRunFile, record_);
   saved_ = Clock::now();
 }

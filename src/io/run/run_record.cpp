@@ -71,12 +71,12 @@ namespace {
 
 Json options_of(const RunRecord& r) {
   return {{"end", r.end},
-          {"asked_step", r.asked_step},
+          {"asked_step", r.requested_step},
           {"step", r.step},
           {"tolerance", r.tolerance},
           {"frame_rate", r.frame_rate},
           {"integrator", r.integrator},
-          {"asked_integrator", r.asked_integrator},
+          {"asked_integrator", r.requested_integrator},
           {"joint_solver", r.joint_solver},
           {"threads", r.threads},
           {"width", r.width},
@@ -152,7 +152,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["work"] = work_of(r);
   json["monitors"] = monitors_of(r);
   if (r.error) json["error_estimate"] = error_estimate_of(*r.error);
-  json["held"] = r.held;
+  json["held"] = r.parameters_without_inertia;
   json["skipped"] = r.skipped;
   json["notes"] = r.notes;
   json["files"] = r.files;
@@ -180,12 +180,12 @@ void read_scene(const Json& scene, RunRecord& r) {
 // Keys read with value() are absent in the records of older versions.
 void read_options(const Json& options, RunRecord& r) {
   options.at("end").get_to(r.end);
-  options.at("asked_step").get_to(r.asked_step);
+  options.at("asked_step").get_to(r.requested_step);
   options.at("step").get_to(r.step);
   r.tolerance = options.value("tolerance", 0.0);
   options.at("frame_rate").get_to(r.frame_rate);
   options.at("integrator").get_to(r.integrator);
-  r.asked_integrator = options.value("asked_integrator", r.integrator);
+  r.requested_integrator = options.value("asked_integrator", r.integrator);
   options.at("joint_solver").get_to(r.joint_solver);
   options.at("threads").get_to(r.threads);
   options.at("width").get_to(r.width);
@@ -247,7 +247,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     r.seconds = read_pairs<double>(json.at("wall_seconds"));
     read_work(json.at("work"), r);
     read_monitors(json.at("monitors"), r);
-    json.at("held").get_to(r.held);
+    json.at("held").get_to(r.parameters_without_inertia);
     json.at("skipped").get_to(r.skipped);
     json.at("notes").get_to(r.notes);
     json.at("files").get_to(r.files);

@@ -38,7 +38,7 @@ struct Corners {
 
 /// Returns the material point in the direction g of the mesh pattern with the radial coordinate w.
 struct Labels {
-  const ShapeFace& shape;
+  const ShapeInterface& shape;
   ShapeParameters a;
   Material<double> operator()(const Vec3<double>& g, double w) const {
     Material<double> m = shape.mesh_label(g, a);
@@ -318,7 +318,7 @@ void check_elements(const Part& part, int resolution, const Eigen::MatrixXi& ele
 Solid::Solid(const Part& part, int resolution, Order order) {
   check_resolution(part, resolution, order);
   const ParameterValues<double> rest = part.parameters().rest();
-  const ShapeFace& shape = part.shape();
+  const ShapeInterface& shape = part.shape();
   const Surface surface(part, resolution);
   n_surface_ = static_cast<int>(surface.material().size());
   const Labels label{shape, rest.b.data()};

@@ -165,7 +165,7 @@ PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integran
 
 /// Returns four points with the mass, the centroid and the second moments of the given ones.
 std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestPoint>& points) {
-  const ShapeFace& shape = r.part.shape();
+  const ShapeInterface& shape = r.part.shape();
   double m = 0;
   Vec3<double> first = Vec3<double>::Zero();
   Mat3<double> second = Mat3<double>::Zero();
@@ -213,7 +213,7 @@ MassPoints place_mass_points(const Part& part, int doublings) {
   out.n_points = static_cast<int>(placed.points.size());
   out.rule = affine ? "affine" : shape.by_sections ? "sections" : shape.points_apart ? "full" : "rings";
   out.level = placed.level;
-  out.unsettled = placed.remaining;
+  out.relative_error = placed.remaining;
   return out;
 }
 

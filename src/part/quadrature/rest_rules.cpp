@@ -221,7 +221,7 @@ std::vector<SliceNode> slice_nodes(const RestShape& r, int n) {
 }
 
 void add_slice(const RestShape& r, const SliceNode& node, std::vector<RestPoint>& out) {
-  const ShapeFace& shape = r.part.shape();
+  const ShapeInterface& shape = r.part.shape();
   const double h = shape.half_height(r.a), z = node.zeta * h;
   const Section section = shape.section(node.zeta, node.gap, r.a);
   if (!(section.area > 0)) return;
@@ -296,7 +296,7 @@ Material<double> on_ring(const AngleNode& u, const QuadratureNode& w, const Eige
 
 void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
               const std::vector<AngleNode>& v_nodes, std::vector<RestPoint>& out) {
-  const ShapeFace& shape = r.part.shape();
+  const ShapeInterface& shape = r.part.shape();
   const double ring_exponent = shape.ring_exponent(r.a);
   const RingTangents nodes(r, u, w, v_nodes);
   const std::vector<Mat3<double>> F = r.part.chain_gradient(nodes.e, r.rest);

@@ -96,8 +96,8 @@ class StrainIntegrands {
  public:
   static constexpr const char* subject = "strain energy";
   static constexpr int kEach = 4;
-  static constexpr double kTolerance = kStrainSettled, kThin = 1e-2 * kStrainSettled,
-                          kRequired = 1e2 * kStrainSettled;
+  static constexpr double kTolerance = kStrainTolerance, kThin = 1e-2 * kStrainTolerance,
+                          kRequired = 1e2 * kStrainTolerance;
 
   StrainIntegrands(const RestShape& shape, const ContinuumLaw& law)
       : shape_(shape), law_(law), ranges_(shape.part) {
@@ -270,7 +270,7 @@ StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, doub
   thin_points(integrands, placed.points);
   StrainPoints points = with_directions(part, shape.rest, placed.points);
   points.rule = "rings";
-  points.settled = std::max(placed.remaining, kStrainSettled);
+  points.relative_error = std::max(placed.remaining, kStrainTolerance);
   return points;
 }
 

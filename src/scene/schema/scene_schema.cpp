@@ -174,7 +174,7 @@ Record time_record() {
            optional("step", number(above(0), "s"), "Fixed time step.", "0.001"),
            optional("integrator", choice(integrator_choices()), "Method of time integration.",
                     "\"semi_implicit_euler\""),
-           optional("tolerance", number(between(kLeastTolerance, kGreatestTolerance), "1"),
+           optional("tolerance", number(between(kMinTolerance, kMaxTolerance), "1"),
                     "Bound on the error of a step, which then controls the step length. Its unit is the size "
                     "of the part for lengths and the radian for angles; for rates it is this unit per "
                     "second, or per a shorter time scale of the part. When absent, all "

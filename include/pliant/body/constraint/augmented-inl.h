@@ -64,15 +64,15 @@ PLIANT_INLINE void AugmentedFactor::factor(const std::vector<PartWorkspace<doubl
     const PartWorkspace<double>& w = parts[at(island_->parts[p])];
     const int n = static_cast<int>(w.inertia.M.rows());
     for (int i = 0; i < n; ++i) {
-      const bool held = w.held(i);
+      const bool without_inertia = w.without_inertia(i);
       for (int k = i; k < n; ++k) {
-        const bool any_held = held || w.held(k);
-        *value++ = any_held ? (k == i ? 1 : 0) : w.inertia.M(k, i);
+        const bool any_without_inertia = without_inertia || w.without_inertia(k);
+        *value++ = any_without_inertia ? (k == i ? 1 : 0) : w.inertia.M(k, i);
       }
       for (const auto& [j, side] : sides_of_[p]) {
         const JointModel& joint = model_->joints()[at(j)];
         const double* Cq = work.Cq.data() + joint.sides[at(side)].offset;
-        const bool on = is_selected(work.modes[at(j)], closed_only) && !held;
+        const bool on = is_selected(work.modes[at(j)], closed_only) && !without_inertia;
         for (int r = 0; r < joint.rows; ++r) *value++ = on ? Cq[r * n + i] : 0;
       }
     }
@@ -87,14 +87,14 @@ PLIANT_INLINE void AugmentedFactor::factor(const std::vector<PartWorkspace<doubl
     }
   }
   for (const double d_row : d) *value++ = -d_row;
-  sound_ = factor_->factor(K_);  // if the factorisation fails, solutions are NaN
+  factored_ = factor_->factor(K_);  // if the factorisation fails, solutions are NaN
 }
 
 PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
   const Eigen::Index n_v = island_->n_v, rows = island_->rows;
   VecX<double> b = VecX<double>::Zero(n_v + rows), z = b, left;
   b.tail(rows) = x;
-  if (!sound_ || !x.allFinite()) {  // the finite check of the step reports NaN
+  if (!factored_ || !x.allFinite()) {  // the finite check of the step reports NaN
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
     return;
   }

@@ -37,7 +37,7 @@ class AugmentedFactor {
   std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< of each part: (joint, its side)
   SparseMatrix K_;
   std::unique_ptr<SparseFactor> factor_;
-  bool sound_ = false;
+  bool factored_ = false;
 };
 
 /// Largest number of rows of an island for dependent_rows().

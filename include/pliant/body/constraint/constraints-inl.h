@@ -145,16 +145,17 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls PlacePart for the parts of an island in their order, each just before the first joint that needs it.
+/// Calls EvaluatePart for the parts of an island in their order, each just before the first joint that needs
+/// it.
 class PartsInTurn {
  public:
-  PartsInTurn(const Island& island, const PlacePart& place) : island_(island), place_(place) {
+  PartsInTurn(const Island& island, const EvaluatePart& place) : island_(island), place_(place) {
     if (!place) next_ = island.parts.size();
   }
   void place_for(const JointModel& joint) {
     for (const JointSide& side : joint.sides) place_to(at(side.place) + 1);
   }
-  void place_rest() { place_to(island_.parts.size()); }
+  void evaluate_remaining() { place_to(island_.parts.size()); }
 
  private:
   void place_to(std::size_t end) {
@@ -162,7 +163,7 @@ class PartsInTurn {
   }
 
   const Island& island_;
-  const PlacePart& place_;
+  const EvaluatePart& place_;
   std::size_t next_ = 0;
 };
 
@@ -171,13 +172,13 @@ class PartsInTurn {
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                     const PlacePart& place) {
+                     const EvaluatePart& place) {
   detail::PartsInTurn in_turn(island, place);
   for (const int j : island.joints) {
     in_turn.place_for(model.joints()[at(j)]);
     detail::evaluate_joint(model, j, t, parts, work);
   }
-  in_turn.place_rest();
+  in_turn.evaluate_remaining();
   for (const int j : island.strings) detail::evaluate_joint(model, j, t, parts, work);
 }
 
@@ -208,14 +209,14 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                                const PlacePart& place) {
+                                const EvaluatePart& place) {
   detail::PartsInTurn in_turn(island, place);
-  if (island.augmented) in_turn.place_rest();  // the augmented matrix needs the masses of all parts
+  if (island.augmented) in_turn.evaluate_remaining();  // the augmented matrix needs the masses of all parts
   detail::factor_after(model, island, parts, work, [&](int j) {
     in_turn.place_for(model.joints()[at(j)]);
     detail::evaluate_joint(model, j, t, parts, work);
   });
-  in_turn.place_rest();
+  in_turn.evaluate_remaining();
   for (const int j : island.strings) detail::evaluate_joint(model, j, t, parts, work);
 }
 
@@ -260,7 +261,7 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     prepare(j);
     const JointModel& joint = model.joints()[at(j)];
     for (int r = 0; joint.first_offset >= 0 && r < joint.rows; ++r)
-      blocks_.measure_by(joint.island_row + r, diagonal_of_ends(model, work, j, r));
+      blocks_.raise_scale(joint.island_row + r, diagonal_of_ends(model, work, j, r));
     for (; coupling != island.couplings.end() && coupling->later_joint() == j; ++coupling)
       if (is_selected(work.modes[at(coupling->row_joint)], closed_only) &&
           is_selected(work.modes[at(coupling->column_joint)], closed_only))
@@ -314,7 +315,7 @@ std::vector<bool> JointFactor<S>::dependent(const Model& model, const Island& is
   if constexpr (std::is_same_v<S, double>)
     if (augmented_) return dependent_rows(model, island, work);
   std::vector<bool> dependent(at(island.rows));
-  for (int r = 0; r < island.rows; ++r) dependent[at(r)] = blocks_.held(r);
+  for (int r = 0; r < island.rows; ++r) dependent[at(r)] = blocks_.excluded(r);
   return dependent;
 }
 
@@ -392,7 +393,8 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
       if constexpr (std::is_same_v<S, double>)
         if (part.local != nullptr) {
           VecX<double> buffer;
-          add(at_points(part.shared, part.local->at_nodes(w.local->d_dot.data(), buffer)), 6 + part.n_s);
+          add(at_points(part.joint_points, part.local->at_nodes(w.local->d_dot.data(), buffer)),
+              6 + part.n_s);
         }
     }
     power[static_cast<int>(Work::anchors)] += done - closing;

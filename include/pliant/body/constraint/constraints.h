@@ -104,14 +104,14 @@ struct ConstraintWorkspace {
 };
 
 /// A function that evaluates a part (by its number) as far as its joints need it.
-using PlacePart = std::function<void(int)>;
+using EvaluatePart = std::function<void(int)>;
 
 /// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls place(i), if given, for
 /// each part of the island just before the first of its joints is evaluated, while both are in the cache.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                     const PlacePart& place = {});
+                     const EvaluatePart& place = {});
 
 /// Computes M^-1 C_q^T and the factors of W_c of an island. Rows of joints that do not act are left out.
 template <class S>
@@ -122,7 +122,7 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                                const PlacePart& place = {});
+                                const EvaluatePart& place = {});
 
 /// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between two points of one part,
 /// returns the sum of the entries that each side alone would have. If the motion of the part cannot move one

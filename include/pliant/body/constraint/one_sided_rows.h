@@ -41,7 +41,7 @@ class OneSidedRows {
     };
     for (int i = 0; i < group_.parts(); ++i)
       for (int k = 0; k < group_.model(i).n_s; ++k) {
-        if (group_.workspace(i).held(6 + k)) continue;
+        if (group_.workspace(i).without_inertia(6 + k)) continue;
         check({i, k, 1, 0});
         check({i, k, -1, 0});
       }
@@ -54,7 +54,7 @@ class OneSidedRows {
   }
 
   /// Computes the pushes that satisfy the rows added so far. Returns x with these pushes.
-  Vector meet(const Vector& x) {
+  Vector satisfy(const Vector& x) {
     const auto n = static_cast<Eigen::Index>(n_);
     MatMax<double, kMaxRows> W(n, n);
     VecMax<double, kMaxRows> b(n);
@@ -80,10 +80,10 @@ class OneSidedRows {
   /// Changes x so that it satisfies all rows of the group with bound(row), including rows that the pushes of
   /// others would violate.
   template <class Bound>
-  void meet_all(Vector& x, Bound&& bound) {
+  void satisfy_all(Vector& x, Bound&& bound) {
     if (!add_violated(x, bound)) return;
-    Vector now = meet(x);
-    while (add_violated(now, bound)) now = meet(x);
+    Vector now = satisfy(x);
+    while (add_violated(now, bound)) now = satisfy(x);
     x = now;
   }
 

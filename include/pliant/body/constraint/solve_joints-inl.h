@@ -227,8 +227,9 @@ PLIANT_INLINE void solve_joints(const Model& model, const Island& island, std::v
   if (!limits.empty()) {
     OneSidedRows<Eigen::Dynamic> rows(forces.group());
     for (const OneSidedRow& row : limits) rows.add(row);
-    rows.meet(forces.x());
-    if (detail::soften_closing(island, work.joints, forces.group(), forces.x(), rows)) rows.meet(forces.x());
+    rows.satisfy(forces.x());
+    if (detail::soften_closing(island, work.joints, forces.group(), forces.x(), rows))
+      rows.satisfy(forces.x());
     std::vector<double> pushes;
     rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
       pushed.push_back(row);

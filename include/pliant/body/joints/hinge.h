@@ -32,7 +32,7 @@ struct Hinge {
   static Vec<T, 2> axis_angle(const Vec3<T>& a, const Mat3<T>& b) {
     Vec3<T> of_b = b.transpose() * a;
     // At a half turn the direction of the error is not defined. Choose one, as rotation_vector() does.
-    if (plain(of_b[0]) <= kHalfTurn) of_b[1] += T(kOffHalfTurn);
+    if (plain(of_b[0]) <= kHalfTurnCosine) of_b[1] += T(kHalfTurnOffset);
     of_b /= math::sqrt(T(of_b.dot(of_b)));
     const T factor = angle_over_sine(of_b[0], T(of_b[1] * of_b[1] + of_b[2] * of_b[2]));
     return {of_b[1] * factor, of_b[2] * factor};

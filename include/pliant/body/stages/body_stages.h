@@ -66,7 +66,7 @@ template <class S>
 void start_evaluation(const Evaluation<S>& e) {
   const std::size_t n_parts = e.model().parts().size();
   e.work.parts.resize(n_parts);
-  e.work.held.resize(n_parts);
+  e.work.without_inertia.resize(n_parts);
   e.work.v_dot.resize(e.model().n_v());
   e.work.power.setConstant(S(0.0));
   choose_rigid_islands<S>(e);
@@ -212,10 +212,10 @@ inline std::vector<OneSidedRow> limits_at_rest(const Evaluation<double>& e, cons
 /// Stage 4 of an island: C, C_dot, bias and C_q, then M^-1 C_q^T and W_c, then lambda and the accelerations
 /// of its parts. place(i): evaluates part i, if the parts are evaluated together with their joints.
 template <class S>
-void evaluate_island(const Evaluation<S>& e, const Island& island, const PlacePart& place) {
+void evaluate_island(const Evaluation<S>& e, const Island& island, const EvaluatePart& place) {
   if (e.uses_rigid(island) || e.skips(island)) return;
   evaluate_and_factor_joints<S>(e.model(), island, e.t, e.work.parts, e.work.joints,
-                                e.with_joints(island) ? place : PlacePart());
+                                e.with_joints(island) ? place : EvaluatePart());
   if constexpr (std::is_same_v<S, double>)
     solve_joints(e.model(), island, limits_at_rest(e, island), e.work);
   else
@@ -263,7 +263,7 @@ void collect_part(const Evaluation<S>& e, int i) {
   if constexpr (std::is_same_v<S, double>)
     // Joints and limits accelerate the local coordinates too.
     if (m.local != nullptr && w.a_r != w.local->a_free)
-      m.local->push_all(m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
+      m.local->push_all(m.joint_points, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
                         v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
 }
 

@@ -238,15 +238,15 @@ void add_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 
 /// Whether any velocity of a part has no inertia now.
 inline bool has_inertialess_velocity(const PartWorkspace<double>& w) {
-  if (w.local) return w.local->held.any();
-  return w.rigid != nullptr ? w.rigid->rigid_factor.any_held() : w.factor.any_held();
+  if (w.local) return w.local->without_inertia.any();
+  return w.rigid != nullptr ? w.rigid->rigid_factor.any_excluded() : w.factor.any_excluded();
 }
 
 /// Factors M of a part.
 inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // neither a joint nor a limit can push on the part
-    m.local->compliance(m.shared, *w.local);
+    m.local->compliance(m.joint_points, *w.local);
     w.inertia.M = w.local->A_inverse;
     return;
   }
@@ -255,22 +255,22 @@ inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
-/// Factors M of part i and notes in work.held whether it has a velocity without inertia.
+/// Factors M of part i and records in work.without_inertia whether it has a velocity without inertia.
 inline void factor_part_mass(const Model& model, int i, Workspace<double>& work) {
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
   factor_mass(model.parts()[static_cast<std::size_t>(i)], w);
-  work.held[static_cast<std::size_t>(i)] = has_inertialess_velocity(w) ? 1 : 0;
+  work.without_inertia[static_cast<std::size_t>(i)] = has_inertialess_velocity(w) ? 1 : 0;
 }
 
 /// For a part that deforms locally, computes w.a_r, followed by the accelerations of d at its joints, and the
 /// second derivatives d_ddot of all its local coordinates.
 inline void accelerate_local(const PartModel& m, PartWorkspace<double>& w, Eigen::Ref<VecX<double>> d_ddot) {
   m.local->accelerations(w.a_r, *w.local, d_ddot);
-  if (!m.shared.empty()) {
+  if (!m.joint_points.empty()) {
     VecX<double> buffer;
     const VecX<double> a_r = w.a_r;
     w.a_r.resize(m.n_x());
-    w.a_r << a_r, at_points(m.shared, m.local->at_nodes(d_ddot.data(), buffer));
+    w.a_r << a_r, at_points(m.joint_points, m.local->at_nodes(d_ddot.data(), buffer));
   }
   w.local->a_free = w.a_r;
 }
@@ -281,7 +281,7 @@ template <class Act>
 void for_each_limit_at_rest(const PartModel& m, const std::int8_t* at_limit, const PartWorkspace<double>& w,
                             int i, Act&& act) {
   for (int k = 0; k < m.n_s; ++k)
-    if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.held(6 + k))
+    if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.without_inertia(6 + k))
       act(OneSidedRow{i, k, at_limit[k] < 0 ? 1.0 : -1.0, 0});
 }
 
@@ -299,7 +299,7 @@ inline void apply_limits(const Model& model, int part, const State& modes, Works
   const Group<double, kMaxVelocities> group(model, work, part);
   OneSidedRows<kMaxVelocities> rows(group);
   for_each_limit_at_rest(m, at_limit, w, 0, [&](const OneSidedRow& row) { rows.add(row); });
-  w.a_r = rows.meet(w.a_r);
+  w.a_r = rows.satisfy(w.a_r);
   rows.for_each_pushed([&](const OneSidedRow& row, double) { w.pressed.push_back(row.k); });
 }
 

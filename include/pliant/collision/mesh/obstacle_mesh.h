@@ -61,7 +61,7 @@ class ObstacleMesh {
   /// Returns the point of a triangle that is nearest to x.
   Vec3<double> nearest(int triangle, const Vec3<double>& x) const;
   /// Whether the distance of x from the mesh is at most `distance` (m).
-  bool comes_near(const Vec3<double>& x, double distance) const;
+  bool is_within(const Vec3<double>& x, double distance) const;
 
  private:
   struct Node {

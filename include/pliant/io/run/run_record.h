@@ -29,14 +29,14 @@ struct RunRecord {
   std::string scene_file;
   std::vector<std::string> overrides;  ///< assignments "/json/pointer=value" applied to the scene
   std::uint64_t scene_hash = 0;
-  double end = 0;         ///< requested end time, s
-  double asked_step = 0;  ///< requested fixed step, s; 0 with a tolerance
-  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; 0
-                    ///< with a tolerance
-  double tolerance = 0;                      ///< bound on the error of a step; 0: fixed steps
-  double frame_rate = 0;                     ///< frames per second, 1/s
-  std::string integrator, asked_integrator;  ///< method in use; requested method, which may be kAutomatic
-  std::string joint_solver;                  ///< "blocks", "augmented", both, or empty without joints
+  double end = 0;             ///< requested end time, s
+  double requested_step = 0;  ///< requested fixed step, s; 0 with a tolerance
+  double step = 0;  ///< fixed step in use, s: requested_step, or slightly less so that steps divide the run;
+                    ///< 0 with a tolerance
+  double tolerance = 0;                          ///< bound on the error of a step; 0: fixed steps
+  double frame_rate = 0;                         ///< frames per second, 1/s
+  std::string integrator, requested_integrator;  ///< method in use; requested method, which may be kAutomatic
+  std::string joint_solver;                      ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
   int width = 0, height = 0;  ///< size of pictures, pixels
   std::string graphics;       ///< graphics library of the pictures; empty without pictures
@@ -64,9 +64,10 @@ struct RunRecord {
   double open_gap = 0;     ///< widest gap of an open joint at the last state, m
   int asleep = 0;          ///< number of sleeping parts at the last state
   std::optional<ErrorEstimate> error;  ///< error estimate, if requested
-  std::vector<std::string> held;       ///< parameters without inertia, which were kept constant
-  std::vector<std::string> skipped;    ///< computations that the scene did not need
-  std::vector<std::string> notes;      ///< warnings and automatic choices
+  std::vector<std::string>
+      parameters_without_inertia;    ///< parameters without inertia, which were kept constant
+  std::vector<std::string> skipped;  ///< computations that the scene did not need
+  std::vector<std::string> notes;    ///< warnings and automatic choices
   /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
   std::vector<std::string> files;
 

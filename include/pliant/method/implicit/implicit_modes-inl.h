@@ -11,11 +11,11 @@ namespace pliant {
 PLIANT_INLINE ImplicitModes::ImplicitModes(const PartModel& part)
     : ImplicitPart(part), oscillators_(part.local->oscillators()) {
   const Eigen::Index n = part.local->n_d();
-  P_.resize(3 * static_cast<Eigen::Index>(part.shared.size()), n);
+  P_.resize(3 * static_cast<Eigen::Index>(part.joint_points.size()), n);
   VecX<double> buffer;
   for (Eigen::Index j = 0; j < n; ++j) {
     const VecX<double> mode = VecX<double>::Unit(n, j);
-    P_.col(j) = at_points(part.shared, part.local->at_nodes(mode.data(), buffer));
+    P_.col(j) = at_points(part.joint_points, part.local->at_nodes(mode.data(), buffer));
   }
 }
 
@@ -28,7 +28,7 @@ PLIANT_INLINE int ImplicitModes::prepare(const PartWorkspace<double>& w, double 
   D_s_ = part.alpha() * S_r.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
   S_r.bottomRightCorner(n_s, n_s) += c * D_s_ + c * c * part.K_s();
   for (int k = 0; k < n_r(); ++k)
-    if (w.held(k)) S_r(k, k) += 1;
+    if (w.without_inertia(k)) S_r(k, k) += 1;
   S_r_inverse_ = S_r.inverse();
   return 0;
 }

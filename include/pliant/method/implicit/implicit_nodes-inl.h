@@ -157,7 +157,7 @@ PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double 
   }
   S_.coeffs() *= c * (local().beta() + c);
   const int factorisations = factor_definite(1 + c * local().alpha(), t);
-  const std::vector<NodeWeights>& points = part_->shared;
+  const std::vector<NodeWeights>& points = part_->joint_points;
   if (points.empty()) return factorisations;
   const Eigen::Index n = local().n_nodes();
   Z_.setZero(local().n_d(), 3 * static_cast<Eigen::Index>(points.size()));
@@ -202,7 +202,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   if (n_dense > 0) factor_->solve(T_.rightCols(n_dense));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_dense).array() -= 1;
-  if (part_->shared.empty()) return;
+  if (part_->joint_points.empty()) return;
   B_Z_ = B_.transpose() * Z_;
   N_T_ = at_joints(T_);
 }
@@ -218,7 +218,8 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
     S_r += w.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
     for (int k = 0; k < n_s; ++k)
-      if (w.held.test(static_cast<std::size_t>(6 + k))) {  // the column of W for this parameter is zero
+      if (w.without_inertia.test(
+              static_cast<std::size_t>(6 + k))) {  // the column of W for this parameter is zero
         core(6 + k, 6 + k) -= 1;
         S_r(6 + k, 6 + k) += 1;
       }
@@ -227,11 +228,11 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
 }
 
 PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& nodal) const {
-  const auto n_p = 3 * static_cast<Eigen::Index>(part_->shared.size());
+  const auto n_p = 3 * static_cast<Eigen::Index>(part_->joint_points.size());
   MatX<double> values(n_p, nodal.cols());
   for (Eigen::Index k = 0; k < nodal.cols(); ++k)
     values.col(k) =
-        at_points(part_->shared, Eigen::Map<const Nodes>(nodal.col(k).data(), local().n_nodes(), 3));
+        at_points(part_->joint_points, Eigen::Map<const Nodes>(nodal.col(k).data(), local().n_nodes(), 3));
   return values;
 }
 
@@ -266,9 +267,9 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   }
   e_ = y_ - e_;
   k_v += e_;
-  if (!part_->shared.empty())
+  if (!part_->joint_points.empty())
     change_.tail(change_.size() - n_r()) =
-        at_points(part_->shared, Eigen::Map<const Nodes>(e_.data(), local().n_nodes(), 3));
+        at_points(part_->joint_points, Eigen::Map<const Nodes>(e_.data(), local().n_nodes(), 3));
 }
 
 PLIANT_INLINE MatX<double> ImplicitNodes::compliance() const {

@@ -25,7 +25,7 @@ inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double
                         PartWorkspace<double>& filtered) {
   if (implicit != nullptr) {
     if (!filtered.local) filtered.local = std::make_unique<LocalWorkspace>();
-    filtered.local->take_compliance(implicit->compliance());
+    filtered.local->set_compliance(implicit->compliance());
     filtered.inertia.M = filtered.local->A_inverse;
     return;
   }
@@ -77,7 +77,7 @@ void project_group_rates(const Group<double, Max>& group, const std::vector<OneS
     const VecX<double> change = group.share(before, i);
     const PartWorkspace<double>& w = work.parts[at(group.part(i))];
     const PartModel& m = group.model(i);
-    share_of(m, v_dot) += world_velocity(w, change.head(6 + m.n_s));
+    part_velocities(m, v_dot) += world_velocity(w, change.head(6 + m.n_s));
     if (const ImplicitPart* implicit = parts[at(group.part(i))].get())
       implicit->push(group.workspace(i).inertia.M * change, v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
     for (const OneSidedRow& row : pushed)

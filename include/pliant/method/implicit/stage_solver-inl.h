@@ -159,7 +159,7 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
     const Workspace<double>& work = step_->work;
     step_->dynamics.accelerations(t, q, v, step_->state, step_->work, RankRule::keep);
     ++step_->counters.evaluations;
-    stop_inertialess(model_, work, v);
+    zero_inertialess_velocities(model_, work, v);
     step_->dynamics.coordinate_rates(q, v, rho_q_);
     rho_q_ = r_q + c_ * rho_q_ - q;
     rho_v_ = r_v + c_ * work.v_dot - v;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <pliant/deform/all_deforms.h>
-#include <pliant/part/shape_face.h>
+#include <pliant/part/shape_interface.h>
 #include <pliant/part/shape_jets.h>
 #include <pliant/shape/all_shapes.h>
 
@@ -18,7 +18,7 @@ namespace pliant {
       const LinkParameters<Dual<1>>&, const Material<Dual<1, Pack>>*, JetBatch<Dual<1, Pack>>&);        \
   Linkage template HalfHeight<double> half_height_jet<Shape, double>(const LinkParameters<double>&);    \
   Linkage template HalfHeight<Dual<1>> half_height_jet<Shape, Dual<1>>(const LinkParameters<Dual<1>>&); \
-  Linkage template class ShapeFaceOf<Shape>;
+  Linkage template class ShapeInterfaceOf<Shape>;
 
 /// Declares or defines the instances of one deformation.
 #define PLIANT_DEFORM_KERNELS(Linkage, Deform)                                                            \

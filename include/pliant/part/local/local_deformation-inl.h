@@ -95,15 +95,15 @@ PLIANT_INLINE void LocalDeformation::check_start(const Part& part, const Nodes& 
   throw std::invalid_argument(message.str());
 }
 
-PLIANT_INLINE void LocalWorkspace::take_compliance(MatX<double> compliance) {
+PLIANT_INLINE void LocalWorkspace::set_compliance(MatX<double> compliance) {
   A = std::move(compliance);
   A_inverse = detail::inverse_of_compliance(A);
 }
 
 PLIANT_INLINE void LocalDeformation::compliance(const std::vector<NodeWeights>& points,
                                                 LocalWorkspace& work) const {
-  work.take_compliance(work.response != nullptr ? work.response->compliance()
-                                                : inertial_compliance(points, work));
+  work.set_compliance(work.response != nullptr ? work.response->compliance()
+                                               : inertial_compliance(points, work));
 }
 
 PLIANT_INLINE void LocalDeformation::push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,

@@ -33,7 +33,7 @@ struct LocalWorkspace {
   Vec3<double> moment;  ///< sum m p, kg m
   /// One bit for each coordinate of (c, theta, q_s): whether it moves nothing at the current shape. Such a
   /// coordinate has no inertia and gets no acceleration.
-  std::bitset<kMaxVelocities> held;
+  std::bitset<kMaxVelocities> without_inertia;
 
   // Stage forces().
   double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W, at most 0
@@ -55,7 +55,7 @@ struct LocalWorkspace {
   /// Returns the condition number of the matrix that separates (c, theta, q_s) from d; 1 is best.
   virtual double condition() const { return 1; }
   /// Stores A and its pseudo-inverse. A is nearly singular if attachment points are close together.
-  void take_compliance(MatX<double> compliance);
+  void set_compliance(MatX<double> compliance);
 };
 
 }  // namespace pliant

@@ -36,16 +36,16 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
   // Solve the equations of nodal_deformation.h for unit impulses. Each column of on_d is of_d - f for one
-  // impulse, and each column of loads is of_all.
+  // impulse, and each column of loads is frame_force_all.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();
   loads.rightCols(n_p) = G0.transpose();
-  w.kappa_of = w.solve(on_d);
-  loads -= w.H0 * w.kappa_of;
-  w.a_of = w.solve_transposed(loads);
+  w.kappa_response = w.solve(on_d);
+  loads -= w.H0 * w.kappa_response;
+  w.a_response = w.solve_transposed(loads);
   MatX<double> A(n_r + n_p, n_r + n_p);
-  A.topRows(n_r) = w.a_of;
-  A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;
+  A.topRows(n_r) = w.a_response;
+  A.bottomRows(n_p) = -G0 * w.kappa_response - G * w.a_response;
   // Add the compliance 1/m of the nodes that two points share.
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = 0; b < points.size(); ++b)
@@ -66,7 +66,7 @@ PLIANT_INLINE void NodalDeformation::inertial_push_all(const std::vector<NodeWei
   using namespace node_sums;
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;
+  const VecMax<double> kappa = w.kappa_response * g, a = w.a_response * g;
   const FrameMotion by_conditions(kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> by_kappa =

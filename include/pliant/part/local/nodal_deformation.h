@@ -34,20 +34,20 @@ struct NodalWorkspace final : LocalWorkspace {
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // Stage masses().
-  VecMax<double> unmet;  ///< W^T d; zero if the reference conditions hold
-  VecMax<double> scale;  ///< factors that scale the diagonal of H0 to 1
+  VecMax<double> violation;  ///< W^T d; zero if the reference conditions hold
+  VecMax<double> scale;      ///< factors that scale the diagonal of H0 to 1
   /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // Stage forces(), N.
-  VecX<double> x_dot;     ///< rates of x in the body frame, for damping
-  VecX<double> f, f_d;    ///< forces of the energies that depend on p; F_d, of those that depend on d
-  VecMax<double> of_d;    ///< sum G^T F_d
-  VecMax<double> of_all;  ///< sum G0^T F of all forces F
+  VecX<double> x_dot;            ///< rates of x in the body frame, for damping
+  VecX<double> f, f_d;           ///< forces of the energies that depend on p; F_d, of those that depend on d
+  VecMax<double> frame_force_d;  ///< sum G^T F_d
+  VecMax<double> frame_force_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
   VecMax<double> kappa;
   // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one in each column.
-  MatX<double> kappa_of, a_of;
+  MatX<double> kappa_response, a_response;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
   /// Positions and velocities that project_frames() (room project) saves while it finds the frame.
@@ -123,13 +123,13 @@ class NodalDeformation final : public LocalDeformation {
     return static_cast<const NodalWorkspace&>(work);
   }
   /// The violation of the six reference conditions of rigid motion.
-  struct Unmet {
-    Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
-    Mat3<double> d_s;               ///< sum m d s^T
+  struct ConditionViolation {
+    Vec<double, 6> W_d, W_d_dot;  ///< W^T d, W^T d_dot
+    Mat3<double> d_s;             ///< sum m d s^T
   };
   /// Returns the violation of the conditions by displacements d and rates d_dot.
-  Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
-              const LocalWorkspace& work) const;
+  ConditionViolation violation(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
+                               const LocalWorkspace& work) const;
   /// Returns sum W^T a over nodes. a: one row for each node.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
   /// Computes to = from + sign G v_r of all nodes. Both have the layout of local coordinates; they may be the

@@ -163,7 +163,7 @@ inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot
       dJ.add(times(four.load(mass), four.load(w.d.data(), n)), four.load(column(w, n, k), n));
     });
     const Mat3<double> d_J = dJ.total();
-    w.unmet[6 + k] = d_J.trace();
+    w.violation[6 + k] = d_J.trace();
     conditions.K.block<3, 1>(3, 6 + k) += axial(d_J);
     conditions.P.block<3, 1>(3, 6 + k) = -axial(d_J);
   }
@@ -174,10 +174,10 @@ inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot
 /// instead, so that it has no acceleration.
 inline void factor_conditions(const Part& part, int n_s, MatMax<double>& K, NodalWorkspace& w) {
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
-  w.held.reset();
+  w.without_inertia.reset();
   for (int k = 0; k < n_s; ++k) {
     if (w.H0(6 + k, 6 + k) > part.inertia_floor(k)) continue;
-    w.held.set(static_cast<std::size_t>(6 + k));
+    w.without_inertia.set(static_cast<std::size_t>(6 + k));
     K.row(6 + k).setZero();
     K.col(6 + k).setZero();
     K(6 + k, 6 + k) = w.scale[6 + k] = 1;
@@ -251,9 +251,9 @@ PLIANT_INLINE void NodalDeformation::masses(const Part& part, const VecX<double>
   else if (n_s > 0 || w.H0.rows() == 0)
     w.H0 = detail::inertia_at_positions(w.s.data(), mass, w, n_nodes(), n_s);
   w.moment = Vec3<double>(w.H0(5, 1), w.H0(3, 2), w.H0(4, 0)) + w.m_d;
-  w.unmet.resize(6 + n_s);
-  w.unmet.head<3>() = w.m_d;
-  w.unmet.segment<3>(3) = -axial(w.m_d_s);
+  w.violation.resize(6 + n_s);
+  w.violation.head<3>() = w.m_d;
+  w.violation.segment<3>(3) = -axial(w.m_d_s);
   // H = sum G^T W, where G differs from G0 by -[d]x.
   detail::ReferenceConditions conditions{w.H0, MatMax<double>::Zero(6 + n_s, 6 + n_s)};
   conditions.K.block<3, 3>(3, 0) += skew(w.m_d);
@@ -311,15 +311,15 @@ PLIANT_INLINE void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<
   w.force.tail(own) = w.f_d.tail(own);
   if (of_positions_) w.force.tail(own) += w.f.tail(own);
   w.drag = -nu * sum(square);
-  w.of_d.resize(6 + n_s);
-  w.of_all.resize(6 + n_s);
-  w.of_d.head<3>() = f_d.total();
-  w.of_d.segment<3>(3) = torque_d.total();
-  w.of_all.head<3>() = f.total();
-  w.of_all.segment<3>(3) = torque.total();
+  w.frame_force_d.resize(6 + n_s);
+  w.frame_force_all.resize(6 + n_s);
+  w.frame_force_d.head<3>() = f_d.total();
+  w.frame_force_d.segment<3>(3) = torque_d.total();
+  w.frame_force_all.head<3>() = f.total();
+  w.frame_force_all.segment<3>(3) = torque.total();
   for (int k = 0; k < n_s; ++k) {
-    w.of_d[6 + k] = along_column(w.f_d.data(), w, n, k);
-    w.of_all[6 + k] = along_column(w.force.data(), w, n, k);
+    w.frame_force_d[6 + k] = along_column(w.f_d.data(), w, n, k);
+    w.frame_force_all[6 + k] = along_column(w.force.data(), w, n, k);
   }
 }
 
@@ -374,14 +374,14 @@ PLIANT_INLINE void NodalDeformation::push(const NodeWeights& at, const Vec3<doub
       return Vec3<double>(columns[node], columns[node + n], columns[node + 2 * n]);
     };
     nodes(w.force, n).row(node) += share.transpose();
-    w.of_d.head<3>() += share;
-    w.of_d.segment<3>(3) += at_node(w.x.data()).cross(share);
-    w.of_all.head<3>() += share;
-    w.of_all.segment<3>(3) += at_node(w.s.data()).cross(share);
-    for (int k = 0; k + 6 < w.of_d.size(); ++k) {
+    w.frame_force_d.head<3>() += share;
+    w.frame_force_d.segment<3>(3) += at_node(w.x.data()).cross(share);
+    w.frame_force_all.head<3>() += share;
+    w.frame_force_all.segment<3>(3) += at_node(w.s.data()).cross(share);
+    for (int k = 0; k + 6 < w.frame_force_d.size(); ++k) {
       const double along = at_node(column(w, n, k)).dot(share);
-      w.of_d[6 + k] += along;
-      w.of_all[6 + k] += along;
+      w.frame_force_d[6 + k] += along;
+      w.frame_force_all[6 + k] += along;
     }
   }
 }
@@ -391,8 +391,8 @@ PLIANT_INLINE void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorks
   using namespace node_sums;
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  w.kappa = w.solve(w.of_d - f_r);
-  VecMax<double> loads = w.of_all + w.rates;
+  w.kappa = w.solve(w.frame_force_d - f_r);
+  VecMax<double> loads = w.frame_force_all + w.rates;
   loads.noalias() -= w.H0 * w.kappa;
   const VecMax<double> a = w.solve_transposed(loads);
   f_r = a;
@@ -419,9 +419,9 @@ PLIANT_INLINE Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const 
   return detail::inertia_at_positions(w.x.data(), inertia_.data(), w, n_nodes(), 0);
 }
 
-PLIANT_INLINE NodalDeformation::Unmet NodalDeformation::unmet(const Eigen::Ref<const Nodes>& d,
-                                                              const Eigen::Ref<const Nodes>& d_dot,
-                                                              const LocalWorkspace& work) const {
+PLIANT_INLINE NodalDeformation::ConditionViolation NodalDeformation::violation(
+    const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
+    const LocalWorkspace& work) const {
   using namespace node_sums;
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
@@ -436,10 +436,10 @@ PLIANT_INLINE NodalDeformation::Unmet NodalDeformation::unmet(const Eigen::Ref<c
     ds.add(m_d, s);
     s_mv.add(cross(s, m_v));
   });
-  Unmet violation;
+  ConditionViolation violation;
   violation.d_s = ds.total();
-  violation.of_d << md.total(), -axial(violation.d_s);
-  violation.of_d_dot << mv.total(), s_mv.total();
+  violation.W_d << md.total(), -axial(violation.d_s);
+  violation.W_d_dot << mv.total(), s_mv.total();
   return violation;
 }
 

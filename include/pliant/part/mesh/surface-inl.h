@@ -68,7 +68,7 @@ PLIANT_INLINE Surface::Surface(const Part& part, int resolution) {
     throw std::invalid_argument("surface resolution " + std::to_string(resolution) +
                                 " must be from 1 to 512");
   const ParameterValues<double> rest = part.parameters().rest();
-  const ShapeFace& shape = part.shape();
+  const ShapeInterface& shape = part.shape();
   std::vector<std::array<int, 3>> triangles;
   if (shape.mesh() == MeshPattern::ball) {
     const BallSurface ball(resolution);

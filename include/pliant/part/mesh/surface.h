@@ -17,7 +17,7 @@ class Surface {
   Surface(const Part& part, int resolution);
 
   const std::vector<Material<double>>& material() const { return material_; }
-  /// The direction or pair of angles of each material point, the argument of ShapeFace::mesh_label().
+  /// The direction or pair of angles of each material point, the argument of ShapeInterface::mesh_label().
   const std::vector<Vec3<double>>& places() const { return places_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
   /// Returns the resolution that gives about this number of triangles.

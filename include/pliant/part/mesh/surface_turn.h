@@ -8,7 +8,7 @@
 namespace pliant {
 
 /// The largest local rotation, rad, for which elasticity that is linear in d is accurate.
-inline constexpr double kMostLinearTurn = 0.3;
+inline constexpr double kMaxLinearRotation = 0.3;
 
 /// Returns whether dynamic parameters change the shape while an elastic law of the part is linear in d and
 /// depends on the direction of d. The elasticity of modes is always such a law.

@@ -26,7 +26,7 @@ struct MassPoints {
   int level = 0;     ///< level of refinement at which the search stopped
   /// Relative change of the integrals by doubling the points once more. 0 if the change is at most 2e-14, or
   /// if it is at most 1e-12 and finer rules do not reduce it.
-  double unsettled = 0;
+  double relative_error = 0;
 };
 
 /// Returns the mass points of a part at rest: of a solid (density in kg/m^3) or of a shell (density in

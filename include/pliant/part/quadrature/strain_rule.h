@@ -7,9 +7,9 @@ namespace pliant {
 
 /// Returns the points. If the strain is equal everywhere in the body, one point suffices. Else the rule has
 /// rings of points. The search doubles them until energy, force and stiffness change by no more than
-/// kStrainSettled at states spread over the ranges of the dynamic parameters. Then it removes points that
+/// kStrainTolerance at states spread over the ranges of the dynamic parameters. Then it removes points that
 /// these integrals do not need. volume: volume of a solid at rest, m^3. Throws std::invalid_argument if no
-/// rule reaches a change of 100 kStrainSettled.
+/// rule reaches a change of 100 kStrainTolerance.
 StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
-// Function bodies of stiff_pushes.h: setting and resetting the stiffening factor of each part.
+// Function bodies of stiff_projection_metric.h: setting and resetting the stiffening factor of each part.
 #pragma once
 
-#include <pliant/method/implicit/stiff_pushes.h>
+#include <pliant/method/implicit/stiff_projection_metric.h>
 
 #include <algorithm>
 
@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-PLIANT_INLINE StiffPushes::StiffPushes(const Dynamics& dynamics, double t, double c, const State& state,
-                                       Workspace<double>& work)
+PLIANT_INLINE StiffProjectionMetric::StiffProjectionMetric(const Dynamics& dynamics, double t, double c,
+                                                           const State& state, Workspace<double>& work)
     : work_(work) {
   const Model& model = dynamics.model();
   if (!state.q.allFinite() || !state.v.allFinite()) return;
@@ -30,7 +30,7 @@ PLIANT_INLINE StiffPushes::StiffPushes(const Dynamics& dynamics, double t, doubl
   }
 }
 
-PLIANT_INLINE void StiffPushes::end() {
+PLIANT_INLINE void StiffProjectionMetric::end() {
   for (PartWorkspace<double>& w : work_.parts) w.stiffening = 0;
 }
 

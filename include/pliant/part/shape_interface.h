@@ -1,6 +1,6 @@
-// ShapeFace: the interface of a shape with virtual functions, for computations when a part is prepared and
-// for output. A step uses templates instead (shape_jets.h). shape/shape.h documents the members of a shape;
-// the optional ones have defaults here.
+// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared
+// and for output. A step uses templates instead (shape_jets.h). shape/shape.h documents the members of a
+// shape; the optional ones have defaults here.
 #pragma once
 
 #include <memory>
@@ -16,9 +16,9 @@ namespace pliant {
 /// The parameters a of a shape, as an array.
 using ShapeParameters = const double*;
 
-class ShapeFace {
+class ShapeInterface {
  public:
-  virtual ~ShapeFace() = default;
+  virtual ~ShapeInterface() = default;
   virtual const char* name() const = 0;
   virtual const char* formula() const = 0;
   virtual const ParameterSpec* parameters() const = 0;
@@ -79,10 +79,10 @@ class ShapeFace {
 /// Returns the material point at x (m) of a shape that has no label function. Newton's method solves
 /// e(u, v, w) = x and starts in the direction of x. Throws std::runtime_error if the method does not
 /// converge: the shape is not star-shaped and needs a label function.
-Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
+Material<double> generic_label(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a);
 /// Returns the gradient of the radial coordinate w at x (m), 1/m, for a shape that has no label function. At
 /// the poles it is the limit along a meridian.
-Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
+Vec3<double> generic_gauge_gradient(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a);
 
 namespace detail {
 
@@ -115,9 +115,9 @@ PLIANT_HAS_MEMBER(linear_lengths)
 
 }  // namespace detail
 
-/// The ShapeFace of a shape type.
+/// The ShapeInterface of a shape type.
 template <class Shape>
-class ShapeFaceOf final : public ShapeFace {
+class ShapeInterfaceOf final : public ShapeInterface {
   static constexpr int K = shape_size<Shape>;
   using RestMap = typename detail::RestMapOf<Shape>::Map;
   static Vec<double, K> vec(ShapeParameters a) { return Eigen::Map<const Vec<double, K>>(a); }

@@ -11,13 +11,14 @@ namespace pliant {
 
 /// While the object lives, impulses on parts act in this metric. If the state is not finite, the metric does
 /// not change.
-class StiffPushes {
+class StiffProjectionMetric {
  public:
   /// work: the evaluation of the last stage. state: the state at time t (s). c: gamma h of the stages, s.
-  StiffPushes(const Dynamics& dynamics, double t, double c, const State& state, Workspace<double>& work);
-  ~StiffPushes() { end(); }
-  StiffPushes(const StiffPushes&) = delete;
-  StiffPushes& operator=(const StiffPushes&) = delete;
+  StiffProjectionMetric(const Dynamics& dynamics, double t, double c, const State& state,
+                        Workspace<double>& work);
+  ~StiffProjectionMetric() { end(); }
+  StiffProjectionMetric(const StiffProjectionMetric&) = delete;
+  StiffProjectionMetric& operator=(const StiffProjectionMetric&) = delete;
 
  private:
   /// Restores the mass metric.

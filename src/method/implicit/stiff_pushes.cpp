@@ -1,2 +1,0 @@
-// The library's instance of the function bodies in <pliant/method/implicit/stiff_pushes-inl.h>.
-#include <pliant/method/implicit/stiff_pushes-inl.h>
