@@ -2,7 +2,8 @@
 # preset of CMake. Source this file from POSIX sh with the project's folder as the current one.
 # shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
-# Minutes that a stage takes on 2 cores in a new folder. README.md and tests/README.md state the same numbers.
+# Minutes that a stage takes on 2 cores in a new folder. README.md states the first number. README.md and tests/README.md
+# state the sum of the other two.
 pliant_minutes_program=4
 pliant_minutes_everything=10
 pliant_minutes_tests=25
@@ -11,7 +12,7 @@ pliant_minutes_tests=25
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
 # Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, and Python for
-# the test of scenes/KEYS.md.
+# the tests package/scene_keys and package/house.
 pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }

@@ -130,8 +130,8 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
     dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
-  // The velocities of the state have not changed since the evaluation in scratch, so the velocities in
-  // scratch are valid.
+  // scratch has the evaluation before the projection of the coordinates. This projection does not change
+  // velocities, so keep_momenta() reads them from scratch.
   if (pushed) keep_momenta(group, scratch, work, state);
   projection.forget();
   step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -149,8 +149,9 @@ inline bool passes_limit(const PartModel& m, State& state) {
 }
 
 /// Sets the mode of open joints with a small gap and a small rate of the gap to closed. any_rate: whether the
-/// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint; up
-/// to twice this gap is small too. Returns whether any joint closed.
+/// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint.
+/// With such a method, the bound of a small gap is therefore larger by twice this gap, up to kMaxGap, and the
+/// bound of a small rate grows with it. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -214,7 +215,8 @@ inline void fail_on_unclosable_joint(StepContext& step, const Island& island) {
   std::for_each(island.strings.begin(), island.strings.end(), check_joint);
 }
 
-/// Ends the closing of strings whose gap is small.
+/// Sets the mode of closing strings that exceed their length by a small gap at most: slack if a string is
+/// shorter than its length, otherwise closed.
 inline void close_strings(const Model& model, const Island& island, const Workspace<double>& work,
                           State& state) {
   for (const int j : island.strings) {

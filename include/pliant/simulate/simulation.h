@@ -26,7 +26,7 @@ class Simulation {
   /// Stabilization::assemble_first is set. Joints with a small gap become closed, and impulses make the
   /// velocities agree with them. integrator: the name of a method, or kAutomatic. threads: number of threads.
   /// tolerance: largest error of a step (method/error_scale.h), which then determines the length of the
-  /// steps. With tolerance 0 steps have the length that the caller gives, or with kAutomatic the tolerance is
+  /// steps. With tolerance 0 the caller gives the length of the steps. With kAutomatic, tolerance 0 means
   /// kStandardTolerance. Throws std::invalid_argument, UnsatisfiableModel and NumericalFailure.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
@@ -71,7 +71,7 @@ class Simulation {
   /// Returns the impulses of joints at the times when joints engaged and at kinks of prescribed paths, in the
   /// order of time and without those that are rounding.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
-  /// Returns the counters of the kernels, summed over parts.
+  /// Returns the numbers of evaluations by kind (part/counters.h), summed over parts.
   Counters counters() const;
   /// Returns the names of the parameters ("part.parameter") that had no inertia at some step and were fixed
   /// in that step, and of such velocities of frames ("part.omega.x").
@@ -117,9 +117,9 @@ class Simulation {
 /// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open, a
 /// rotation of half a radian per step, and one radian of phase of modes if contact is active. Parts that
 /// springs connect are bounded together; in large groups they are bounded separately, with twice the
-/// stiffness of each spring. The bounds of elasticity ignore joints, which only reduce its frequencies. Both
-/// simplifications can only make the result smaller. If the method integrates local elasticity implicitly,
-/// only springs and drag bound the parts that deform locally.
+/// stiffness of each spring to another moving part. The bounds of elasticity ignore joints, which only reduce
+/// its frequencies. Both simplifications can only make the result smaller. If the method integrates local
+/// elasticity implicitly, only springs, drag and rotation bound the parts that deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

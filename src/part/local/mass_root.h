@@ -33,8 +33,8 @@ class MassRoot {
   Eigen::SparseMatrix<double> whole() const;
 
  private:
-  /// Applies `nodal` to the rows along x, then along y, then along z, and `own` to the rows of the further
-  /// coordinates.
+  /// Applies `nodal` to each of the three blocks of n_nodes() rows, which have the components along x, y and
+  /// z. Applies `own` to the rows of the further coordinates.
   template <class Nodal, class Own>
   MatX<double> each(const MatX<double>& all, Nodal&& nodal, Own&& own) const;
 

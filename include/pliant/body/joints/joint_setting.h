@@ -1,4 +1,5 @@
-// The settings of a joint that is made by the name of its type, by scenes and by the functions of MultiBody.
+// The settings of a joint. Scenes and the functions of MultiBody make a joint from the name of its type and
+// its settings.
 #pragma once
 
 #include <initializer_list>

@@ -20,7 +20,8 @@ struct Evaluation {
   const State* modes = nullptr;
   /// The evaluation whose modes, pushed limits and taut strings a derivative keeps; nullptr otherwise.
   const Workspace<double>* fixed_modes = nullptr;
-  /// Whether only v_dot, power and the factors of W_c are computed. Sleeping parts are skipped then.
+  /// Whether only v_dot, power and the factors of W_c = C_q M^-1 C_q^T are computed. Sleeping parts are
+  /// skipped then.
   bool rates_only = false;
   Vec3<double> gravity = dynamics.model().body().gravity_at(t);  ///< m/s^2, world
 

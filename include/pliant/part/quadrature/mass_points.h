@@ -30,12 +30,12 @@ struct MassPoints {
 };
 
 /// Returns the mass points of a part at rest: of a solid (density in kg/m^3) or of a shell (density in
-/// kg/m^2). Along each direction, the number of quadrature nodes is doubled until no entry of the mass matrix
-/// and of the inertial forces changes by more than 2e-14 of its scale (1e-12 where terms cancel). The entries
-/// are compared at states spread over the ranges of the dynamic parameters. Then nodes that the integrals do
-/// not need are removed. doublings: number of further doublings before this removal. Throws
-/// std::invalid_argument if the rest or the initial shape folds over, or if
-/// more than 2 million points are needed.
+/// kg/m^2). Along each direction, the number of quadrature nodes is doubled until no test integral changes by
+/// more than 2e-14 of its scale (1e-12 where terms cancel). The test integrals are random combinations of the
+/// entries of M and g_q, at states spread over the ranges of the dynamic parameters. Then nodes that the
+/// integrals do not need are removed. doublings: number of further doublings before this removal. Throws
+/// std::invalid_argument if the rest or the initial shape folds over, or if more than 2 million points are
+/// needed.
 MassPoints place_mass_points(const Part& part, int doublings = 0);
 
 }  // namespace pliant
