@@ -16,7 +16,8 @@ namespace {
 /// The line between centres that are nearer than this, times the sum of the sizes, is no candidate.
 constexpr double kOneCentre = 1e-9;
 /// The centre of a part is treated as inside the other part if f = w - 1 of the other part is less than this
-/// at the centre. The lowest points of the first part over the other one are then close to this centre.
+/// at the centre. A centre slightly outside (f > 0) is included, because the lowest points of the other part
+/// over the first one are then close to this centre.
 constexpr double kNearCentre = 0.1;
 }  // namespace
 

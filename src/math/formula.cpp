@@ -309,6 +309,6 @@ Formula::Formula(const std::string& text) : program_(Parser(text).parse()) {
     has_branches_ = has_branches_ || detail::formula_program::has_branches(instruction.code);
   }
   if (stack_ > detail::formula_program::kLargeStack)
-    throw std::logic_error("a formula needs a larger stack than its depth allows");
+    throw std::logic_error("a formula needs a larger stack than the limit of nesting allows");
 }
 }  // namespace pliant

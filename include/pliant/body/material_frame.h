@@ -78,9 +78,9 @@ struct FramedPoint {
   MaterialFrame frame;
 };
 
-/// Returns the frame at a point whose axes at rest are the columns of a rotation, given in the frame of its
-/// part, or in the world for a point of the world. The part must be prepared. Throws std::invalid_argument if
-/// no three directions around the point are linearly independent.
+/// Returns a frame at a point. axes: the axes of the frame at rest, as the columns of a rotation, in the
+/// frame of the part; in the world for a point of the world. The part must be prepared. Throws
+/// std::invalid_argument if no three directions around the point are linearly independent.
 FramedPoint framed(const Point& at, const Mat3<double>& axes);
 
 /// Returns a rotation whose first column is along a direction (of any length > 0).

@@ -23,7 +23,8 @@ std::vector<std::string> skipped_work(const Model& model) {
   if (rigid > 0)
     skipped.push_back("Jacobians of rigid parts, whose inertia is constant: " + std::to_string(rigid));
   if (frozen > 0)
-    skipped.push_back("rows and columns of frozen parameters in deformable parts: " + std::to_string(frozen));
+    skipped.push_back("rows and columns of M for frozen parameters of deformable parts: " +
+                      std::to_string(frozen));
   if (moving > 0 && local == 0)
     skipped.push_back("meshes and elements, because no part has local deformation");
   if (local > 0 && local < moving)
@@ -32,7 +33,7 @@ std::vector<std::string> skipped_work(const Model& model) {
   if (model.joints().empty())
     skipped.push_back("constraint Jacobians and multipliers, because there are no joints");
   if (moving > 1 && model.springs().empty() && model.joints().empty())
-    skipped.push_back("coupled solution, because no spring or joint ties the parts");
+    skipped.push_back("coupled equations of the parts, because no spring or joint connects them");
   if (model.springs().empty() && model.forces().empty() && model.torques().empty())
     skipped.push_back("springs, point forces and torques, because there are none");
   if (model.body().gravity.isZero(0)) skipped.push_back("gravity, because it is zero");

@@ -66,14 +66,15 @@ class RigidIsland {
   int island() const { return island_; }
 
   /// Computes v_dot of the parts at (q, v) with all joints closed, and the factor of W_c, as
-  /// Dynamics::accelerations() does. work.joints.rank is the rule of the factor; f of a part with loads must
-  /// contain the loads, on v_r.
+  /// Dynamics::accelerations() does. work.joints.rank is the rule of the factor. For a part with loads,
+  /// work.parts[i].f must contain the generalised forces of the loads on v_r.
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
   /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and |C_dot| <=
   /// per_length * rate * length + per_size * |v|. length: JointModel::length; |c|, |v|: the largest entries
-  /// of c and of the velocities of the parts of the joint.
+  /// of c and of the velocities of the parts of the joint. per_length and per_size have no unit. rate
+  /// (1/s) converts an allowed gap to an allowed rate of the gap.
   struct Rounding {
     double per_length, per_size, rate;
   };
@@ -152,8 +153,9 @@ class RigidIsland {
   void solve_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
   /// Returns the changes of the acceleration of the centre of mass and of beta by the forces in the arms.
   std::pair<Vec3<Pack>, Vec3<Pack>> response(const Four& constants, const RigidWorkspace& now) const;
-  /// Returns the largest gap of the joints relative to the allowed one, by the positions (or else velocities)
-  /// of their points in the arms; x: q or v. Stores the rows in now.lambda.
+  /// Returns the largest |C| of the joints, divided by the allowed |C|, and stores C in now.lambda. The arms
+  /// must contain the positions of the points of the joints, and x is q. If `positions` is false, the arms
+  /// contain velocities, x is v, and C_dot takes the place of C.
   double largest_gap(const Rounding& allowed, bool positions, const VecX<double>& x,
                      RigidWorkspace& now) const;
   /// Computes the positions of the points in the arms at q; with_rotation: R and B too.
@@ -161,8 +163,9 @@ class RigidIsland {
   void place_arms(const VecX<double>& q, RigidWorkspace& now) const;
   /// Computes the velocities of the points in the arms.
   void set_arm_velocities(const VecX<double>& v, RigidWorkspace& now) const;
-  /// displace() adds the response to the forces in the arms to the coordinates. change_velocities() adds
-  /// `time` times this response to the velocities.
+  /// The forces in the arms cause a response, see response(). displace() adds it to the coordinates.
+  /// change_velocities() adds `time` times the response to the velocities. Here `time` is a factor: 1 if the
+  /// forces cancel rows in m/s, 1/h (1/s) if they cancel rows in m in a step of length h.
   void displace(const RigidWorkspace& now, VecX<double>& q) const;
   void change_velocities(const RigidWorkspace& now, double time, VecX<double>& v) const;
   /// Calls act(k, first entry in q, first entry in v) for each part.

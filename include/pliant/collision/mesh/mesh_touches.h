@@ -34,10 +34,10 @@ struct MeshTouch {
 
 /// Appends the overlaps of two meshes. Their order is determined by the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
-/// Appends the overlaps of a mesh with an obstacle. For a vertex of a behind the obstacle, MeshTouch::b is
-/// not set. Overlaps deeper than `deepest` (m) are ignored, because such a vertex may have come from another
-/// side of the obstacle. A vertex whose outward direction agrees with the normal of a triangle is not behind
-/// that triangle.
+/// Appends the overlaps of a mesh a with an obstacle b. If a vertex of the mesh is behind the obstacle,
+/// MeshTouch::b is not set. Overlaps deeper than `deepest` (m) are ignored, because such a vertex may be on
+/// the far side of the mesh. A vertex whose outward direction agrees with the normal of a triangle is not
+/// behind that triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

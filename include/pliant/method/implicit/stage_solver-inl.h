@@ -175,8 +175,8 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
     if (contraction > stage_solver::kSlowContraction &&
         change * scale_->tolerance() <= stage_solver::kRounding)
       return true;
-    // With the matrix, the first change is as large as the error of the guess, so the contraction is judged
-    // from the third change on.
+    // With the matrix, the ratio of the second change to the first depends on the error of the guess. The
+    // contraction is therefore judged from the third change on.
     const bool too_slow = has_matrix_ ? i > 1 && contraction > stage_solver::kSlowContraction
                                       : i > 0 && change * std::pow(contraction, max_iterations - 1 - i) >
                                                      stage_solver::kConverged;

@@ -42,7 +42,7 @@ class LocalDeformation {
  public:
   virtual ~LocalDeformation() = default;
 
-  /// The mesh whose surface pictures show and contact detection uses.
+  /// Returns the mesh. Pictures show its surface, and contact detection uses it.
   const LocalMesh& mesh() const { return mesh_; }
   /// Number of local coordinates.
   Eigen::Index n_d() const { return initial_.size(); }
@@ -61,7 +61,8 @@ class LocalDeformation {
   virtual const char* unit(Eigen::Index k) const = 0;
   /// Returns a lower bound of the time of an evaluation in microseconds. It decides the number of threads.
   virtual double cost() const = 0;
-  /// Returns a description in words, as in "600 local, of 200 nodes".
+  /// Returns the number of local coordinates and their kind for `pliant info`. For example, "600 local, of
+  /// 200 nodes and 396 triangles; laws: ..." means 600 local coordinates.
   virtual std::string description() const = 0;
 
   /// Returns the weights of a material point over the nodes of at_nodes(). The result is empty for a point
@@ -81,8 +82,9 @@ class LocalDeformation {
   /// Returns the oscillators if the elasticity is diagonal in the local coordinates, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
-  // The dynamics, one function for each stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
-  // workspace must come from workspace(), and LocalWorkspace::place() must have set d and d_dot.
+  // The dynamics in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The stages are those of
+  // include/pliant/body/README.md; stage 4, the joints, is not here. The workspace must come from
+  // workspace(), and LocalWorkspace::place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
   /// Stage 1: computes the positions p = s + d.
@@ -96,11 +98,11 @@ class LocalDeformation {
   /// threads, or nullptr.
   virtual void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
                       ThreadPool* pool) const = 0;
-  /// Stage 4: adds a force (N) on a material point to the forces on the local coordinates. The caller adds
-  /// the generalised force on (c, theta, q_s) to f_r.
+  /// Stage 3, loads: adds a force (N) on a material point to the forces on the local coordinates. The caller
+  /// adds the generalised force on (c, theta, q_s) to f_r.
   virtual void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const = 0;
-  /// Stage 5: solves for the accelerations. f_r: on input the generalised forces on (c, theta, q_s) besides
-  /// those of stage 3, on output a_r. d_ddot: output, accelerations of the local coordinates.
+  /// Stage 5: solves for the accelerations. f_r: on input the generalised forces on (c, theta, q_s) except
+  /// those that forces() computes, on output a_r. d_ddot: output, accelerations of the local coordinates.
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 
@@ -131,7 +133,8 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// Implement compliance() and push_all() by M^-1, for a workspace without a LocalResponse.
+  /// compliance() and push_all() call these two functions, which use M^-1, unless the workspace has a
+  /// LocalResponse. A step that is implicit in the elasticity supplies a LocalResponse in place of M^-1.
   virtual MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                            LocalWorkspace& work) const = 0;
   virtual void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
