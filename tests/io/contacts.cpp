@@ -2,6 +2,7 @@
 // run writes identical files.
 #include <pliant/io/run/run.h>
 
+#include <map>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -121,6 +122,23 @@ TEST_CASE("contacts are recorded with names, positions and forces", "[contact]")
   scene->contacts = false;
   REQUIRE(run(*scene, folder / "without"));
   for (const char* table : kTables) CHECK_FALSE(fs::exists(folder / "without" / table));
+}
+
+TEST_CASE("with error control, the recorded force is the impulse divided by the length of its own step",
+          "[contact]") {
+  const NewFolder folder;
+  auto scene = falling_scene();
+  scene->tolerance = 1e-4;
+  REQUIRE(run(*scene, folder / "out"));
+  std::map<double, double> force_of_time;  // on the box, upwards
+  for (const auto& row : table_of(folder / "out" / kContactsTable))
+    if (row[1] == "box") force_of_time[std::stod(row[0])] += std::stod(row[15]);
+  REQUIRE(force_of_time.size() > 3);
+  const double weight = 9.81 * scene->body.parts()[0]->total_mass();
+  for (const auto& [t, force] : force_of_time) {
+    CAPTURE(t);
+    CHECK(force == Approx(weight));
+  }
 }
 
 TEST_CASE("a resumed run records identical contacts", "[contact]") {

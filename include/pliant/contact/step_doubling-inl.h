@@ -157,6 +157,7 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   state.start = initial.start;
   state.step = initial.step;
   state.h = initial.h;
+  record_.h = halves.length;
   return halves;
 }
 
