@@ -25,7 +25,7 @@ struct Counted {
   Counted& operator+=(const Counted& b) { return *this = *this + b; }
   Counted& operator-=(const Counted& b) { return *this = *this - b; }
   friend Counted sqrt(const Counted& a) { return counted(std::sqrt(a.value)); }
-  friend double least_of(const Counted& a) { return a.value; }
+  friend double min_lane(const Counted& a) { return a.value; }
 };
 
 }  // namespace pliant::bench
