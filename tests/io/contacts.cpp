@@ -128,6 +128,7 @@ TEST_CASE("with error control, the recorded force is the impulse divided by the 
           "[contact]") {
   const NewFolder folder;
   auto scene = falling_scene();
+  scene->integrator = "dop853";
   scene->tolerance = 1e-4;
   REQUIRE(run(*scene, folder / "out"));
   std::map<double, double> force_of_time;  // on the box, upwards
