@@ -1,4 +1,5 @@
-// Accelerations, their directional derivatives, and the ledger of a state.
+// Accelerations, their directional derivatives, the ledger and the hash of a state, and models that are
+// refused.
 #include "catch.h"
 
 #include <Eigen/LU>
