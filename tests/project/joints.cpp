@@ -699,8 +699,8 @@ TEST_CASE("N46: lambda C_q v is the power of the joints on a part that stretches
 }
 
 TEST_CASE(
-    "N36: joints that close during the run from far apart stay within 1.5 times the speed cap, and stay "
-    "closed",
+    "N36: joints that close during the run from far apart stay within 1.5 times the speed cap, and are "
+    "closed at the end",
     "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double apart : {3, 10, 100}) {

@@ -83,9 +83,9 @@ class Dynamics {
   /// Returns the action of a joint for given lambda. lambda: forces (N) of the rows of all joints, or
   /// impulses (N s), for which the result is an impulse too. work: as evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
-  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The sets of parameters that
-  /// limits push and of strings that pull are kept constant. Throws std::logic_error for a part that deforms
-  /// locally.
+  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. It is taken with fixed modes of
+  /// joints, a fixed set of parameters that limits push, and a fixed set of strings that pull. Throws
+  /// std::logic_error for a part that deforms locally.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// Returns the same derivative, from an existing evaluation. work: as accelerations(t, q, v, ...) left it;
   /// dual_work: scratch storage, kept from call to call; its contents are ignored.

@@ -34,8 +34,8 @@ struct PartModel {
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
   VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;           ///< smallest inertia of each velocity, see SymmetricFactor
-  std::vector<Range> limits;            ///< limits of each dynamic parameter
+  VecX<double> inertia_floor;  ///< a velocity with an inertia up to this has none, see SymmetricFactor
+  std::vector<Range> limits;   ///< limits of each dynamic parameter
   /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
   /// shape s.
   std::vector<PointJet<double>> rigid_ports;

@@ -38,8 +38,8 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
-/// start). Only contacts that share a moving part with others are stored. The impulses of limits, of strings
-/// and of contacts on single nodes start at zero.
+/// start). Only contacts that share a moving part with others are stored. The impulses of limits and strings
+/// start at zero, and so do those of contacts on single nodes and of contacts that share a part with them.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
