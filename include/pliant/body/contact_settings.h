@@ -76,7 +76,7 @@ struct ContactPair {
 /// changes. A part stays awake while its drive changes, or while it touches a part or plane with prescribed
 /// motion. A force by a function (PointForce::custom) counts as changing at all times.
 struct Sleep {
-  double speed = 0;    ///< a part is at rest while its fastest point is slower, m/s; above 0
+  double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; above 0
   double after = 0.5;  ///< time at rest after which a part falls asleep, s; above 0
 };
 

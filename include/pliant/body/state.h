@@ -49,7 +49,7 @@ struct CachedContact {
 
 struct State {
   double start = 0;       ///< time of step 0, s
-  double h = 0;           ///< step length, s; of the next step if errors are controlled
+  double h = 0;           ///< step length, s; if errors are controlled, that of the next step
   std::int64_t step = 0;  ///< number of steps since start; time is start + step * h
   double error = 0;       ///< error of the last step, in tolerances; 0 if it is not measured
   /// Largest violation of the contact laws by the impulses of the last step, m/s.

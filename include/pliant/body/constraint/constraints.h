@@ -24,8 +24,8 @@ struct Workspace;
 /// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or sign *
 /// C_q x >= bound for a string.
 struct OneSidedRow {
-  int part;  ///< number of the part in the group; -1: k is the number of a string of the island
-  int k;
+  int part;  ///< number of the part in the group; -1: the row of a string
+  int k;     ///< number of a dynamic parameter of the part, or of a string of the island
   /// 1 at a lower limit and -1 at an upper limit. 1 for a string; projection also uses -1, to keep a taut
   /// string from becoming slack.
   double sign;
@@ -93,7 +93,7 @@ struct ConstraintWorkspace {
   bool stabilise_closed = true;  ///< whether closed joints have Baumgarte's terms; closing joints always do
   RankRule rank = RankRule::decide;  ///< rule of the factors of W_c for dependent rows
   double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
-  VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2; bias = -gamma, n_rows each
+  VecX<S> C, C_dot, bias;            ///< in m, m/s and m/s^2, n_rows each; bias = -gamma
   VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
   std::vector<JointFactor<S>> W_c;   ///< for each island: the factor of the joints that act
   /// For each island with closing joints: the factor of the closed joints only. Impulses keep the closed
