@@ -115,13 +115,13 @@ class Simulation {
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
 /// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs,
-/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open or
-/// not projected, a rotation of half a radian per step, and one radian of phase of modes if contact is
-/// active. Parts that springs connect are bounded together; in large groups they are bounded separately, with
-/// twice the stiffness of each spring to another moving part. The bounds of elasticity ignore joints, which
-/// only reduce its frequencies. Both simplifications can only make the result smaller. If the method
-/// integrates local elasticity implicitly, only springs, drag and rotation bound the parts that deform
-/// locally.
+/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms with constant gains while
+/// a joint is open or not projected, a rotation of half a radian per step, and one radian of phase of modes
+/// if contact is active. Parts that springs connect are bounded together; in large groups they are bounded
+/// separately, with twice the stiffness of each spring to another moving part. The bounds of elasticity
+/// ignore joints, which only reduce its frequencies. Both simplifications can only make the result smaller.
+/// If the method integrates local elasticity implicitly, only springs, drag and rotation bound the parts that
+/// deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant
