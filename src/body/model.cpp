@@ -1,5 +1,5 @@
 // The set-up of a model: the places of parts and joints in the flat vectors, the islands, and the joint
-// solver of each island.
+// solver of each island. Also positions, gaps and names of entries for a state.
 #include <pliant/body/model.h>
 
 #include <algorithm>

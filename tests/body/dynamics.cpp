@@ -1,4 +1,5 @@
-// Accelerations, their directional derivatives, and the ledger of a state.
+// Accelerations, their directional derivatives, the ledger and the hash of a state, and models that are
+// refused.
 #include "catch.h"
 
 #include <Eigen/LU>
@@ -15,7 +16,7 @@ using test::Draws;
 
 namespace {
 
-/// Adds two deforming parts with all kinds of loads.
+/// Adds two deforming parts and a fixed part, with all kinds of loads.
 void busy_scene(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
@@ -102,7 +103,8 @@ TEST_CASE("coordinate rates rotate quaternions with the angular velocity in the 
   CHECK(q_dot.segment<3>(0) == simulation.state().v.segment<3>(0));
 }
 
-TEST_CASE("free fall: all parts accelerate equally in any shape, and nothing else moves", "[dynamics]") {
+TEST_CASE("free fall: the frame of a part has the acceleration of gravity, and no other velocity changes",
+          "[dynamics]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"taper", "bend"}, 1000);
   part.rest({{"a1", 0.3}, {"a2", 0.3}, {"bend.angle", 0.8}, {"taper.tx", 0.4}});
@@ -156,7 +158,7 @@ TEST_CASE("a torque between two parts conserves their momenta, and its work is t
       Part& b = test::add(body, "b", "ellipsoid", {}, 1000);
       b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).place({0.5, 0, 0}).velocity({0.2, 0.3, 0.1}, {0, 0, 0});
       if (rigid) {
-        // the joint gives an island with the specialised evaluation of rigid parts
+        // A ball joint makes these parts a rigid island, which has a specialised evaluation.
         body.ball("hold", point(a, 0, 0), point(b, 0, kPi));
       } else {
         a.stiffness({{"a1", 1e5}});

@@ -22,8 +22,8 @@ using Choice = JointSolver::Choice;
 
 namespace {
 
-/// Adds deforming and rigid parts in loops, with doubled joints, a hinge, a parameter at its limit, and a
-/// part on a string.
+/// Adds deforming and rigid parts in loops, with a doubled joint, a rod, a hinge, a moving anchor, two
+/// strings and a parameter at its limit.
 void tangled_parts(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};

@@ -1,4 +1,5 @@
-// Assembly of joints before time 0: consistent initial states from distant, rotated and deformed parts.
+// Assembly of joints before time 0: consistent initial states from distant, rotated and deformed parts. The
+// last case closes a joint during the run.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Motions that each kind of joint leaves free, on rigid and on deforming parts; joints that switch on and
-// off.
+// Motions that each kind of joint leaves free, on rigid and on deforming parts; joints at special points and
+// within one part; joints that switch on and off.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Motion with joints: decay laws of Baumgarte's equation, momenta, pendulums and chains with known solutions,
-// strings, parameter limits under joints, orders of convergence.
+// strings, parameter limits under joints, orders of convergence, joints that contradict each other.
 #include "catch.h"
 
 #include <algorithm>
@@ -48,7 +48,8 @@ Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
   return place(j.points()[0]) - place(j.points()[1]);
 }
 
-/// A hanging chain of ellipsoids 0.6 m long, joined tip to tip along x from the origin.
+/// A chain of ellipsoids 0.6 m long that hangs from the origin. It starts along x, joined tip to tip. turn:
+/// initial rotation about x of each link relative to the link before, rad.
 void chain(MultiBody& body, int links, double turn = 0) {
   for (int i = 0; i < links; ++i) {
     const std::string name = "link" + std::to_string(i);
@@ -281,7 +282,7 @@ TEST_CASE("orders of convergence on a chain of 8 links: coordinates, velocities 
 
 TEST_CASE("implicit methods form no matrix for a long chain if iterations without a matrix cost less",
           "[joints]") {
-  // 200 links have more velocities than a matrix may have rows.
+  // 200 links have more velocities than the dense matrix of an implicit method may have rows.
   constexpr int links = 200;
   constexpr double end = 0.2;
   MultiBody same;
@@ -697,8 +698,10 @@ TEST_CASE("N46: lambda C_q v is the power of the joints on a part that stretches
   CHECK(simulation.state().v.tail<2>().norm() > 1e-3);
 }
 
-TEST_CASE("N36: joints closing in time from far apart stay below the speed cap, close and stay closed",
-          "[joints]") {
+TEST_CASE(
+    "N36: joints that close during the run from far apart stay within 1.5 times the speed cap, and are "
+    "closed at the end",
+    "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double apart : {3, 10, 100}) {
       MultiBody body;
@@ -724,7 +727,7 @@ TEST_CASE("N36: joints closing in time from far apart stay below the speed cap, 
     }
 }
 
-TEST_CASE("N36: ellipsoids assemble in time from any place and pose, with bounded speed and spin",
+TEST_CASE("N36: ellipsoids assemble during the run from any place and pose, with bounded speed and spin",
           "[joints][long]") {
   const char* method = GENERATE("rk4", "semi_implicit_euler");
   const int joints = GENERATE(1, 4, 12);
@@ -811,8 +814,9 @@ TEST_CASE("a slack string stays slack at time 0, and no impulses are counted whi
   }
 }
 
-TEST_CASE("without projection a string that was too long closes, and has no effect once it is slack",
-          "[joints]") {
+TEST_CASE(
+    "without projection a string with its ends too far apart closes, and has no effect once it is slack",
+    "[joints]") {
   MultiBody body;
   body.gravity.setZero();
   Part& mass = sphere(body, "mass", {1.3, 0, 0});
@@ -915,7 +919,7 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
-/// Methods and their tolerances: every method with fixed steps (tolerance 0), and the methods with error
+/// Methods and their tolerances: every method with fixed steps (tolerance 0), and four choices with error
 /// control.
 const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"semi_implicit_euler", 0},

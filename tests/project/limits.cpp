@@ -211,7 +211,7 @@ TEST_CASE("limits that a motion does not reach do not change its bits", "[limits
   }
 }
 
-TEST_CASE("rest and initial values outside the limits are refused", "[limits]") {
+TEST_CASE("initial values outside the limits are refused", "[limits]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"taper"}, 1000);
   part.initial({{"taper.tx", 1.5}});
@@ -228,7 +228,7 @@ TEST_CASE("limits are checked at the rest value, in either order of the calls", 
   CHECK_NOTHROW(Model(body));
 }
 
-TEST_CASE("jvp keeps parameters at active limits fixed", "[limits]") {
+TEST_CASE("directional derivatives keep parameters at active limits fixed", "[limits]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"taper"}, 1000);
   part.rest({{"a1", 0.5}})

@@ -1,4 +1,4 @@
-// Joints, springs and limits of parts with local deformation.
+// Joints, springs, limits, failures and assembly of parts with local deformation.
 #include "catch.h"
 
 #include <pliant/body/joints/all_joints.h>

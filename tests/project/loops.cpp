@@ -327,7 +327,8 @@ TEST_CASE("N43: a ring of 100 links in free flight for 10 s: energy and gaps", "
 namespace {
 
 /// A crank and an arm of equal length; the end of the arm slides on the x axis. They start at an angle from
-/// upright. When both are upright, with the end at the pivot, the mechanism has two free motions.
+/// upright. When both are upright, with the end at the pivot, the mechanism can move in two ways: crank and
+/// arm together, or apart.
 void equal_crank(MultiBody& body, double angle) {
   const Vec3<double> A(std::sin(angle), 0, std::cos(angle)), B(2 * std::sin(angle), 0, 0);
   Part& crank = rod(body, "crank", {0, 0, 0}, A, kY, 0.02);
@@ -442,8 +443,9 @@ TEST_CASE("N44: an anchor that moves beyond the reach of an arm stops the run wh
 
 namespace {
 
-/// Checks that no gap exceeds 1e-10 body lengths during a run, for every method. Islands of more than 100
-/// parts skip the methods that solve dense equations for all velocities.
+/// Checks that no gap exceeds 1e-10 body lengths during a run, for every method. For more than 100 parts, the
+/// methods that solve dense equations for all velocities are left out. length: length of a body, m. h: step,
+/// s.
 void check_gaps(const std::string& name, const std::function<void(MultiBody&)>& make, double length, double h,
                 int steps) {
   for (const IntegratorInfo& info : all_integrators()) {

@@ -132,7 +132,7 @@ TEST_CASE("loads and other parts beside rigid islands do not change how the isla
   }
 }
 
-TEST_CASE("joints of rigid parts are projected from small gaps, and the general method projects large gaps",
+TEST_CASE("rigid islands project joints from small gaps; from large gaps they refuse and change nothing",
           "[rigid_islands]") {
   MultiBody body;
   add_hanging_boxes(body, 6, 0, 3);

@@ -24,13 +24,15 @@ Part& box(MultiBody& body, const std::string& name, const Vec3<double>& at, doub
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Adds a stack of boxes, each slightly displaced from the box below, with vertical gaps of `gap`.
+/// Adds a floor and a stack of boxes, each slightly displaced from the box below, with vertical gaps of `gap`
+/// (m), also above the floor.
 void stack(MultiBody& body, int boxes, double gap = 0) {
   for (int i = 0; i < boxes; ++i)
     box(body, "box" + std::to_string(i), {0.005 * (i % 3), 0, kSize + (2 * kSize + gap) * i + gap});
   floor(body);
 }
-/// Runs for `time` and checks the coordinates a thousand times; returns the largest change of any coordinate.
+/// Runs for `time` (s) in steps of h (s). Returns the largest change of any coordinate, checked after every
+/// step, or about a thousand times in a long run.
 double max_change(Simulation& simulation, double time, double h) {
   const VecX<double> start = simulation.state().q;
   const auto steps = static_cast<int>(std::lround(time / h));

@@ -32,8 +32,9 @@ VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<co
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
 /// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). For a part that
-/// deforms locally, impulses on v_r and at the points of its joints would change its velocities to those in
-/// x; the velocities of its local coordinates change by the response to these impulses.
+/// deforms locally, x contains v_r and the velocities of the points of its joints only. The function finds
+/// the impulses, on v_r and at these points, that change the present velocities to x. The velocities of its
+/// local coordinates change by the response to these impulses.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by h times the

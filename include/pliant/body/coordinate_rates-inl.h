@@ -1,5 +1,5 @@
-// The rates q_dot of the coordinates, Eq. (7): theta_dot = 1/2 theta o (0, omega) for the quaternions, where
-// o is the product of quaternions. The rates of all other coordinates are their velocities.
+// The rates q_dot of the coordinates q of Eq. (10): theta_dot = 1/2 theta o (0, omega) for the quaternions,
+// where o is the product of quaternions. The rates of all other coordinates are their velocities.
 #pragma once
 
 #include <pliant/body/dynamics.h>

@@ -16,10 +16,11 @@ namespace pliant {
 /// One evaluation. Each stage returns at once if it has nothing to do:
 ///   1 positions      x = c + R (s + d), x_dot = L v                                      Eqs. (1)-(9)
 ///   2 mass           M, g_q                                                              Eq. (11)
-///   3 forces         f = g_q - K (q - rest) - D v + gravity + drag + L^T f               Eq. (11)
+///   3 forces         f = g_q - K (q - rest) - D v + gravity + drag + f_q                 Eq. (11)
 ///   4 joints         C, C_q, gamma, Baumgarte's terms, then lambda                       Eqs. (12)-(14)
 ///   5 accelerations  M a = f + C_q^T lambda                                              Eq. (14)
-/// Stages 1 to 3 run part by part, and M^-1 f follows for each part, while the part is in the cache.
+/// f_q = L^T times the forces of the loads. Stages 1 to 3 run part by part, and M^-1 f follows for each part,
+/// while the part is in the cache.
 template <class S>
 void Dynamics::evaluate(const Evaluation<S>& e) const {
   detail::start_evaluation<S>(e);

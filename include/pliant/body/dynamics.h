@@ -34,7 +34,8 @@ struct JointPolicy {
   /// Whether closed joints are projected after each step; they have no Baumgarte terms then.
   bool projected = false;
   /// Whether steps may be of first order. Baumgarte's terms then do not close the gap of a rotating joint
-  /// completely. The joint is closed with the small gap that remains (project/project_joints-inl.h).
+  /// completely. The joint becomes closed with the small gap that remains (close_joints() in
+  /// project/project_joints-inl.h).
   bool first_order = true;
 };
 
@@ -51,25 +52,27 @@ class Dynamics {
   // The time t (s), q, v and the modes are separate arguments, because the stages of a method of integration
   // evaluate at coordinates and velocities that belong to no State.
 
-  /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work. modes: the step length,
-  /// the modes of limits and joints, and the sleeping parts, whose accelerations and powers are zero. rank:
-  /// the rule that decides which rows of joints are dependent (solve/pivots.h). A parameter at a limit with a
-  /// rate of exactly 0 can only move into its range. A parameter at a limit with another rate is free here:
-  /// the method of integration has to stop it.
+  /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work except those of rigid
+  /// islands. modes: the step length, the modes of limits and joints, and the sleeping parts, whose
+  /// accelerations and powers are zero. rank: the rule that decides which rows of joints are dependent
+  /// (solve/pivots.h). A parameter at a limit with a rate of exactly 0 can only move into its range. A
+  /// parameter at a limit with another rate is free here: the method of integration has to stop it.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// Computes work.v_dot, work.power and the factors of W_c = C_q M^-1 C_q^T alone, for a stage of a method.
-  /// Sleeping parts are skipped, and their fields in work do not change. If all joints of a
-  /// rigid island are closed and projected, the fields of its parts and joints are not computed either. They
-  /// keep values of earlier calls, or zeros.
+  /// Computes work.v_dot, work.power and the factors of W_c = C_q M^-1 C_q^T, which is enough for a stage of
+  /// a method. Other fields of work may be out of date. Sleeping parts are skipped unless loads act on them
+  /// or on their island. If all joints of a rigid island are closed and projected, the fields of its parts
+  /// and joints keep values of earlier calls, or zeros.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
              Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Computes frames and attachment points of the parts of an island, and C, C_dot, bias and C_q of its
-  /// joints, at (t, q, v); no other field of work changes.
+  /// joints, at (t, q, v). Also sets the modes of these joints, and port_force of parts with loads to zero.
+  /// No other field of work changes.
   void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
                        const std::vector<JointMode>& modes, const Island& island,
                        Workspace<double>& work) const;
-  /// Does evaluate_joints(), and computes the mass matrices, M^-1 C_q^T and the factors of W_c.
+  /// Does evaluate_joints(), and computes the mass matrices, their factors, M^-1 C_q^T and the factors of
+  /// W_c.
   void factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<JointMode>& modes, const Island& island, Workspace<double>& work,
                      RankRule rank = RankRule::decide) const;
@@ -80,9 +83,9 @@ class Dynamics {
   /// Returns the action of a joint for given lambda. lambda: forces (N) of the rows of all joints, or
   /// impulses (N s), for which the result is an impulse too. work: as evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
-  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The sets of parameters that
-  /// limits push and of strings that pull are kept constant. Throws std::logic_error for a part that deforms
-  /// locally.
+  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. It is taken with fixed modes of
+  /// joints, a fixed set of parameters that limits push, and a fixed set of strings that pull. Throws
+  /// std::logic_error for a part that deforms locally.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// Returns the same derivative, from an existing evaluation. work: as accelerations(t, q, v, ...) left it;
   /// dual_work: scratch storage, kept from call to call; its contents are ignored.
@@ -109,7 +112,8 @@ class Dynamics {
   /// Returns the ledger of the coordinates and velocities of a state at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
   /// Evaluates the accelerations and returns the name of the first term that is not finite, in the order of
-  /// the evaluation; an empty text if all terms are finite. Does not evaluate if q or v is not finite.
+  /// the evaluation; an empty text if all terms are finite. If q or v is not finite, returns the name of its
+  /// first such entry without an evaluation.
   std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                        Workspace<double>& work) const;
 

@@ -21,7 +21,7 @@ struct PartModel {
   const Part* part;
   int q0, v0;       ///< first entries in q and v; -1 for a part that is fixed or has a prescribed motion
   int n_s;          ///< number of dynamic global parameters
-  int island = -1;  ///< number of its island of joined parts; -1: no joints
+  int island = -1;  ///< number of its island of joined parts; -1: no joints or no coordinates
   int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none
   int limit0;                      ///< first entry in State::at_limit
   bool loaded = false;             ///< whether springs, forces or torques act on it
@@ -34,16 +34,16 @@ struct PartModel {
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
   VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;           ///< smallest inertia of each velocity, see SymmetricFactor
-  std::vector<Range> limits;            ///< limits of each dynamic parameter
+  VecX<double> inertia_floor;  ///< a velocity with an inertia up to this has none, see SymmetricFactor
+  std::vector<Range> limits;   ///< limits of each dynamic parameter
   /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
   /// shape s.
   std::vector<PointJet<double>> rigid_ports;
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
-  std::vector<int> port_place;                ///< number of each port in `joint_points`; -1: no joint acts on it
-  Eigen::Matrix3d R0;                         ///< orientation of a fixed part
+  std::vector<int> port_place;                ///< number of each port in `joint_points`; -1: none
+  Eigen::Matrix3d R0;                         ///< orientation at time 0, which a fixed part keeps
   Part::Use use;                              ///< locks the part against changes
 
   /// Returns the rest values of the dynamic parameters at time t (s).
@@ -92,8 +92,8 @@ struct JointModel {
   int row;                  ///< first row in the rows of all joints
   std::vector<PortRef> at;  ///< attachment of each of its points
   std::vector<JointSide> sides;
-  int island, node;  ///< its island; its number among the equations of the island, -1 for a string
-  int island_row;    ///< first row in the rows of the island
+  int island, node;  ///< number of its island, and number of the joint in Island::joints (-1 for a string)
+  int island_row;    ///< first row in the rows of the island; -1 for a string
   double length;     ///< size of the smallest part with coordinates at the joint, m
   bool driven;       ///< whether one of its points has a prescribed motion
   /// For a joint between two points of one part: start of the C_q^T and M^-1 C_q^T that its first side alone
@@ -101,8 +101,8 @@ struct JointModel {
   int first_offset = -1;
 };
 
-/// A block of W_c = C_q M^-1 C_q^T: two sides of joints on one part add C_q (row side) times M^-1 C_q^T
-/// (column side).
+/// A term of a block of W_c = C_q M^-1 C_q^T: for two sides of joints on one part, C_q of the row side times
+/// M^-1 C_q^T of the column side.
 struct Coupling {
   int part;
   int row_offset, column_offset;  ///< starts of the sides in the flat arrays
@@ -133,8 +133,8 @@ struct Island {
 
 class Model {
  public:
-  /// Prepares all parts. Throws std::invalid_argument, naming the part, joint or load at fault. `body` must
-  /// outlive the model.
+  /// Prepares all parts. Throws std::invalid_argument, naming the part, joint, load or setting at fault.
+  /// `body` must outlive the model.
   explicit Model(MultiBody& body);
 
   const MultiBody& body() const { return *body_; }
@@ -154,8 +154,9 @@ class Model {
   const std::vector<double>& switch_times() const { return switch_times_; }
   /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
-  /// Returns the first time, later than `after` and no later than `until` (s), at which the rate of a
-  /// prescribed end of a joint jumps while the joint acts: over all joints, or for one joint.
+  /// Returns the first kink, later than `after` and no later than `until` (s), of the motion of a prescribed
+  /// end of a joint while the joint acts: over all joints, or for one joint. At a kink the position or its
+  /// rate jumps. Without a kink its time is infinite.
   Kink next_kink(double after, double until) const;
   Kink next_kink(const JointModel& joint, double after, double until) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints

@@ -89,7 +89,8 @@ class MultiBody {
   Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
 
   /// Adds a joint by its formula (body/joints/*.h). points: the points of its first side, then those of its
-  /// second side. Throws std::invalid_argument if the points of a side are not on one part.
+  /// second side. Throws std::invalid_argument if the name is in use or empty, if the formula is invalid, if
+  /// it needs another number of points, or if the points of a side are not on one part.
   template <class F>
   JointOf<F>& join(std::string name, F formula, std::vector<Point> points) {
     auto joint = std::make_unique<JointOf<F>>(std::move(name), std::move(points), std::move(formula));
@@ -101,7 +102,8 @@ class MultiBody {
   /// Adds the point-to-point joint: two points coincide.
   Joint& ball(std::string name, Point a, Point b);
   /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Rest values
-  /// and placements of its parts must be set before. Throws std::invalid_argument for an invalid setting.
+  /// and placements of its parts must be set before. Throws std::invalid_argument for an unknown type or an
+  /// invalid setting.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);
   /// Adds a hinge. axis: the direction of its pin in the frame of b's part (or in the world). The direction
   /// in a's part follows from the placement of the undeformed parts.
@@ -116,10 +118,10 @@ class MultiBody {
   /// side) and activates contact. Throws std::invalid_argument if the name is in use; Simulation
   /// checks the mesh.
   ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
-  /// Adds a rectangle without thickness that is solid from both sides. middle: m, world; orientation: of its
-  /// frame, to world. The x and y axes of this frame are along the edges; half_x and half_y are its half
-  /// extents (m). Throws std::invalid_argument unless the half extents are finite and positive, or if the
-  /// name is in use.
+  /// Adds a rectangle without thickness that is solid from both sides. middle: m, world. orientation: from
+  /// the frame of the rectangle to the world. The x and y axes of this frame are along the edges; half_x and
+  /// half_y are its half extents (m). Throws std::invalid_argument unless the half extents are finite and
+  /// positive, or if the name is in use.
   ContactObstacle& plate(std::string name, const Vec3<double>& middle, const Eigen::Quaterniond& orientation,
                          double half_x, double half_y);
 

@@ -38,8 +38,8 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
-/// start). Only contacts that share a moving part with others are stored. The impulses of limits, of strings
-/// and of contacts on single nodes start at zero.
+/// start). Only contacts that share a moving part with others are stored. The impulses of limits and strings
+/// start at zero, and so do those of contacts on single nodes and of contacts that share a part with them.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
@@ -49,7 +49,7 @@ struct CachedContact {
 
 struct State {
   double start = 0;       ///< time of step 0, s
-  double h = 0;           ///< step length, s; of the next step if errors are controlled
+  double h = 0;           ///< step length, s; if errors are controlled, that of the next step
   std::int64_t step = 0;  ///< number of steps since start; time is start + step * h
   double error = 0;       ///< error of the last step, in tolerances; 0 if it is not measured
   /// Largest violation of the contact laws by the impulses of the last step, m/s.

@@ -26,11 +26,14 @@ struct PartWorkspace {
   std::vector<PointJet<S>> ports;           ///< p, J and rates of each attachment point, body frame
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< position (m) and velocity (m/s) of each, world
   // Stage 2, mass.
-  /// M, (6 + n_s) x (6 + n_s), and g_q of Eq. (11). For a part that deforms locally, M is n_x x n_x, the mass
-  /// matrix of its velocities in a group.
+  /// M, (6 + n_s) x (6 + n_s), and g_q of Eq. (11). For a part that deforms locally, g_q is not computed, and
+  /// M is n_x x n_x, the mass matrix of its velocities in a group. Stage 5 computes this M, unless neither a
+  /// joint nor a limit can push on the part.
   Inertia<S> inertia;
   // Stage 3, forces.
-  VecX<S> f;                        ///< sum of all generalised forces on v_r, body frame, 6 + n_s
+  /// Sum of all generalised forces on v_r, body frame, 6 + n_s; for a part that deforms locally, without
+  /// those that LocalDeformation::forces() computes.
+  VecX<S> f;
   Vec<S, kWorks> power;             ///< rates (W) of the works of this part: damping, drag, actuation
   std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
@@ -44,7 +47,7 @@ struct PartWorkspace {
   std::vector<int> pressed;
   Counters counters;  ///< how often the kernels of the part ran
 
-  /// Replaces x, n_x forces, by M^-1 x.
+  /// Replaces x, n_x forces, by M^-1 x, with zeros for velocities without inertia.
   template <class Vector>
   void solve_mass(Vector&& x) const {
     if constexpr (std::is_same_v<S, double>) {

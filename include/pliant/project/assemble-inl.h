@@ -43,9 +43,10 @@ inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
 /// Largest number of joints that a message names, without the one with the largest gap.
 inline constexpr int kMaxNamed = 8;
-/// If a step is longer than kMaxStepSize allowed steps, and all gaps are below kNearGap lengths, the cost of
-/// rigid motion is multiplied by kCostIncrease. A step that is accepted at the first attempt divides the cost
-/// by kCostDecrease.
+/// The cost of rigid motion is multiplied by kCostIncrease, while any parameter has a stiffness and all gaps
+/// are at most kNearGap lengths, if a step is longer than kMaxStepSize allowed steps or does not decrease the
+/// merit. A step that is accepted at the first attempt without being halved divides the cost by
+/// kCostDecrease.
 inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCostDecrease = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -184,7 +185,8 @@ class Assembly {
     }
   }
 
-  /// Makes one step; returns the largest rotation or relative change of a parameter. If rigid motion cannot
+  /// Makes one step. Returns its length as a rotation, rad: the largest rotation of a part, or the largest
+  /// change of a parameter (relative for lengths) times kMaxRotation / kMaxChange. If rigid motion cannot
   /// close the gaps, as in a straight chain that is too short, the cost of rigid motion rises for some steps,
   /// so that the parameters change more.
   double step(double largest) {
@@ -248,7 +250,7 @@ class Assembly {
       move(group, x, 1);
     }
   }
-  /// Adds the gaps of all acting joints to rows.
+  /// Adds C of all acting joints to their rows.
   void add_gaps(VecX<double>& rows) const {
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];

@@ -18,9 +18,9 @@ struct AssemblyReport {
 };
 
 /// Assembles the islands (groups of parts that joints connect) in which an acting joint has a gap above
-/// kClosedGap. The coordinates of other islands keep all their bits. Sets State::at_limit of all parameters.
-/// Throws UnsatisfiableModel with the name of the joint that cannot close, and NumericalFailure if a gap is
-/// not finite.
+/// kClosedGap times the size of its smaller part (project/project.h). The coordinates of other islands keep
+/// all their bits. Sets State::at_limit of all parameters. Throws UnsatisfiableModel with the name of the
+/// joint that cannot close, and NumericalFailure if a gap is not finite.
 AssemblyReport assemble(const Dynamics& dynamics, State& state);
 
 }  // namespace pliant

@@ -32,9 +32,9 @@ class JointSwitching {
   /// Engages and releases the joints that begin or stop acting at step.t, and wakes their islands. Times
   /// within the tolerance (s) are equal. Does nothing if the state is not finite.
   void switch_at(StepContext& step, double tolerance);
-  /// Engages the joints of the marked islands: closing joints with a small gap become closed, and impulses
-  /// project the velocities onto the closed joints. Records the impulses. islands: one mark for each island
-  /// of the model.
+  /// Engages the joints of the marked islands by engage_joints() (project/project.h): closing joints with a
+  /// small gap become closed, and impulses project the velocities onto the closed joints. Records the
+  /// impulses. islands: one mark for each island of the model.
   void engage(StepContext& step, const std::vector<bool>& islands);
   /// Applies the impulses at a kink (s) of prescribed paths and at kinks within the tolerance (s) of it.
   /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed

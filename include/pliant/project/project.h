@@ -14,11 +14,12 @@ namespace pliant {
 /// both limits are larger while the joint rotates (close_joints in project_joints-inl.h).
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
-/// Engages the joints of an island that begin to act: joints with a small gap become closed, and impulses
-/// make the velocities agree with them. On return step.work is an evaluation of the joints of the island.
-/// scratch: scratch storage; its contents are ignored. impulses: the impulses on the rows of all joints are
-/// added to it, N s. The change of energy goes to Work::projection, or to Work::limits if a limit or a slack
-/// string pushed.
+/// Engages the joints of an island that begin to act. If closed joints are projected, joints with a small gap
+/// become closed, at any rate of the gap. Closing strings with a small excess become closed or slack.
+/// Impulses make the velocities agree with the closed joints. On return step.work is an evaluation of the
+/// joints of the island. scratch: scratch storage; its contents are ignored. impulses: the impulses on the
+/// rows of all joints are added to it, N s. The change of energy goes to Work::projection, or to Work::limits
+/// if a limit or a slack string pushed.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
@@ -50,12 +51,14 @@ void project_frames(StepContext& step);
 void project_frames(StepContext& step, const std::vector<int>& parts);
 
 /// Projects parameters that have passed a limit in the step that ends at step.t back to the limit, in the
-/// mass metric, and stops them by impulses. For parts without joints.
+/// mass metric, and stops them by impulses. For parts without joints. Does nothing if the state is not
+/// finite.
 void project_limits(StepContext& step);
 
 /// Projects all islands at step.t, with the limits and strings of their parts: open joints with a small gap
 /// become closed, and closed joints are projected. Skips sleeping islands. Throws UnsatisfiableModel if
-/// joints contradict each other, and NumericalFailure if the step is too long.
+/// joints contradict each other, and NumericalFailure if the step is too long. Does nothing if the state is
+/// not finite.
 void project_joints(StepContext& step);
 
 }  // namespace pliant

@@ -226,8 +226,8 @@ inline void close_strings(const Model& model, const Island& island, const Worksp
   }
 }
 
-/// Sets the modes of strings: closed if the string is taut, otherwise slack. A string is taut if its ends are
-/// at its length and do not approach each other.
+/// Sets the modes of strings: closed if the string is taut, otherwise slack. A string is taut if the distance
+/// of its ends is at least its length, within kTaut, and they do not approach each other.
 inline void update_string_modes(const Model& model, const Island& island, const Workspace<double>& work,
                                 State& state) {
   const double rate = model.body().stabilization.rate;

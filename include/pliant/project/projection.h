@@ -18,26 +18,26 @@
 
 namespace pliant::projection {
 
-/// Residual of a projection relative to the length of the joint (JointModel::length); and rounding of
-/// coordinates relative to their size.
+/// kResidual: residual of a projection, relative to the length of the joint (JointModel::length). kRounding:
+/// rounding of coordinates, relative to their size.
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
 /// If an iteration leaves more than the share kSlow of the error, the next iteration uses a new factorisation
 /// of C_q M^-1 C_q^T. If an iteration with a new factorisation leaves more than the share kStalled, the error
 /// is the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
-/// A closed joint cannot close if its gap after a projection is above this multiple of rounding().
+/// The projection cannot close a joint if its gap afterwards is above this multiple of rounding().
 inline constexpr double kOpenGap = 1e3;
 /// Largest number of joints that a message names.
 inline constexpr int kMaxNamed = 8;
-/// A row depends on the rows of another joint if a unit force on it causes reactions of that joint above this
-/// share of all reactions.
+/// A row depends on the rows of another joint if a unit force on the row causes reactions of the other joint
+/// above this share of all reactions.
 inline constexpr double kDependentShare = 1e-6;
 /// Largest gap, in sizes of the smaller part of the joint, at which a joint can become closed. If a
 /// projection fails from a larger gap, the step is reported as too long.
 inline constexpr double kMaxGap = 0.1;
-/// A joint with a gap above kStuckGap lengths after a time of kPatience / beta never closes. beta:
-/// Baumgarte's factor, 1/s.
+/// A joint cannot close if other joints contradict it, and its gap is above kStuckGap lengths of the joint
+/// after it has acted for a time of kPatience / beta. beta: Baumgarte's factor, 1/s.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
 /// A projection whose independent rows differ from those at the start of the step may undo at most this share
 /// of the motion.
@@ -335,7 +335,8 @@ class Projection {
   }
 
   /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
-  /// these rows are zero to rounding.
+  /// these rows are zero to rounding, if an iteration no longer reduces them, or if there are none: for a
+  /// part without joints, and for joints that are not projected.
   bool correct_joints(Rows kind, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
     evaluate(kind, iteration, x);
@@ -370,7 +371,8 @@ class Projection {
     return true;
   }
 
-  /// Evaluates the joints at the state. The change of C_dot by new velocities follows from C_q alone.
+  /// Evaluates the joints at the state. In islands without strings, the change of C_dot by new velocities
+  /// follows from C_q alone.
   void evaluate(Rows kind, int iteration, const Vector& x) {
     linear_update_ = kind == Rows::velocities && iteration > 0 && island_->strings.empty();
     if (linear_update_) {
@@ -422,7 +424,8 @@ class Projection {
     return false;
   }
 
-  /// Returns whether a one-sided row stays active: the last evaluation pushed on this row or its opposite.
+  /// Returns whether a one-sided row stays active: the last evaluation pushed on this row or its opposite,
+  /// and a string is still taut. Always false for a part without joints.
   bool remains_active(const OneSidedRow& row) const {
     if (island_ == nullptr) return false;
     if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
@@ -441,7 +444,7 @@ class Projection {
 
   static constexpr double kUnbounded = -std::numeric_limits<double>::infinity();
 
-  /// Returns the smallest change of a row that the limits allow.
+  /// Returns the smallest change of a row that limits and strings allow.
   double min_change(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -461,7 +464,7 @@ class Projection {
     return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
   }
 
-  /// Returns the smallest velocity of a row that the limits allow.
+  /// Returns the smallest velocity of a row that limits and strings allow.
   double min_velocity(const OneSidedRow& row, const Vector& v) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];

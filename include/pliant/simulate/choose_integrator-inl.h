@@ -19,9 +19,9 @@ namespace pliant {
 
 namespace integrator_choice {
 
-/// Number of steps of a trial. Methods that reuse factors take kStepsWithFactors steps, because their steps
-/// grow for longer. The first of kShares equal shares of the trial is not counted: the steps grow there, and
-/// transients of the start decay.
+/// Number of steps of a trial: kSteps. Methods that reuse factors take kStepsWithFactors steps, because their
+/// steps grow for longer. The first of kShares equal shares of the trial is not counted: the steps grow
+/// there, and transients of the start decay.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
 /// Longest trial, s.
 inline constexpr double kLongestTrial = 1e3;

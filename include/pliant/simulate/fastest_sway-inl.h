@@ -1,5 +1,5 @@
 // Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x, where a(q) are the
-// accelerations, on the velocities x that the joints allow.
+// accelerations; x are velocities that the joints allow.
 #pragma once
 
 #include <pliant/simulate/fastest_sway.h>

@@ -63,8 +63,8 @@ auto at_time(double t, F&& act) {
   }
 }
 
-/// Throws std::invalid_argument if the contact cache of a state is not finite, belongs to another model or is
-/// not sorted.
+/// Throws std::invalid_argument if the contact cache of a state is not finite, has a negative age, belongs to
+/// another model or is not sorted.
 inline void check_contact_cache(const State& state, const Model& model) {
   if (state.contact_cache_age < 0)
     throw std::invalid_argument("the contact cache of this state has a negative age");
@@ -305,7 +305,8 @@ PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   throw NumericalFailure(message.str(), last_good_.time());
 }
 
-/// Returns whether joints that do not close after a step of h seconds close after shorter steps.
+/// Returns whether joints that do not close after a step of h seconds close after shorter steps. Changes the
+/// state, which the caller restores.
 PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   state_ = last_good_;
   try {

@@ -27,7 +27,8 @@ class Simulation {
   /// velocities agree with them. integrator: the name of a method, or kAutomatic. threads: number of threads.
   /// tolerance: largest error of a step (method/error_scale.h), which then determines the length of the
   /// steps. With tolerance 0 the caller gives the length of the steps. With kAutomatic, tolerance 0 means
-  /// kStandardTolerance. Throws std::invalid_argument, UnsatisfiableModel and NumericalFailure.
+  /// kStandardTolerance. Throws std::invalid_argument for an invalid model, method or tolerance,
+  /// UnsatisfiableModel if joints contradict each other, and NumericalFailure.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
@@ -114,12 +115,13 @@ class Simulation {
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
 /// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs,
-/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open, a
-/// rotation of half a radian per step, and one radian of phase of modes if contact is active. Parts that
-/// springs connect are bounded together; in large groups they are bounded separately, with twice the
-/// stiffness of each spring to another moving part. The bounds of elasticity ignore joints, which only reduce
-/// its frequencies. Both simplifications can only make the result smaller. If the method integrates local
-/// elasticity implicitly, only springs, drag and rotation bound the parts that deform locally.
+/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms with constant gains while
+/// a joint is open or not projected, a rotation of half a radian per step, and one radian of phase of modes
+/// if contact is active. Parts that springs connect are bounded together; in large groups they are bounded
+/// separately, with twice the stiffness of each spring to another moving part. The bounds of elasticity
+/// ignore joints, which only reduce its frequencies. Both simplifications can only make the result smaller.
+/// If the method integrates local elasticity implicitly, only springs, drag and rotation bound the parts that
+/// deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

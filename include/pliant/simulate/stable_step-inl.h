@@ -201,7 +201,8 @@ class StableStepSearch {
     return stable_step_of(simulation_.integrator(), {matrix(1), matrix(stiffness), matrix(damping)});
   }
 
-  /// Baumgarte's terms act on open joints, and on closed joints without projection.
+  /// Limits the step by Baumgarte's terms. They act on open joints, and on closed joints without projection.
+  /// Gains that follow the step length are stable for any step, so they give no limit.
   void limit_by_stabilization() {
     const JointPolicy& policy = simulation_.dynamics().joint_policy();
     const Stabilization& rule = model_.body().stabilization;

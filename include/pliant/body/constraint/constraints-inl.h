@@ -64,6 +64,7 @@ void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, 
 }
 
 /// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if it acts or is a slack string.
+/// Otherwise sets C_q^T to zero.
 template <class S>
 void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
                     ConstraintWorkspace<S>& work) {
@@ -145,8 +146,8 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls EvaluatePart for the parts of an island in their order, each just before the first joint that needs
-/// it.
+/// Calls EvaluatePart for the parts of an island in their order, each at the latest before the first joint
+/// that needs it.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const EvaluatePart& place) : island_(island), place_(place) {

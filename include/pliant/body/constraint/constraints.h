@@ -24,8 +24,8 @@ struct Workspace;
 /// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or sign *
 /// C_q x >= bound for a string.
 struct OneSidedRow {
-  int part;  ///< number of the part in the group; -1: k is the number of a string of the island
-  int k;
+  int part;  ///< number of the part in the group; -1: the row of a string
+  int k;     ///< number of a dynamic parameter of the part, or of a string of the island
   /// 1 at a lower limit and -1 at an upper limit. 1 for a string; projection also uses -1, to keep a taut
   /// string from becoming slack.
   double sign;
@@ -75,10 +75,11 @@ class JointFactor {
 template <class S, int Max>
 struct GroupVectors {
   VecMax<S, Max> before, joined,
-      x;  ///< accelerations or velocities: without joints; with joints; with joints and one-sided rows
+      x;  ///< accelerations or velocities: `before` the joints act, `joined` with joints, and x, which
+          ///< includes the pushes of one-sided rows
   VecX<S> rows, lambda;        ///< rows C_q x of the joints, and their forces
   VecX<S> correction, change;  ///< lambda and change of x of the last Group::correct()
-  VecMax<S, Max> start, gain;  ///< velocities at which the joints were evaluated; the change since then
+  VecMax<S, Max> start, gain;  ///< velocities at the evaluation of the joints, and their change since then
   VecX<S> gained;              ///< C_q gain, the change of C_dot of the joints
   VecX<S> q, v;                ///< coordinates and velocities of a state
 };
@@ -92,7 +93,7 @@ struct ConstraintWorkspace {
   bool stabilise_closed = true;  ///< whether closed joints have Baumgarte's terms; closing joints always do
   RankRule rank = RankRule::decide;  ///< rule of the factors of W_c for dependent rows
   double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
-  VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2; bias = -gamma, n_rows each
+  VecX<S> C, C_dot, bias;            ///< in m, m/s and m/s^2, n_rows each; bias = -gamma
   VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
   std::vector<JointFactor<S>> W_c;   ///< for each island: the factor of the joints that act
   /// For each island with closing joints: the factor of the closed joints only. Impulses keep the closed
@@ -107,7 +108,8 @@ struct ConstraintWorkspace {
 using EvaluatePart = std::function<void(int)>;
 
 /// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls place(i), if given, for
-/// each part of the island just before the first of its joints is evaluated, while both are in the cache.
+/// the parts of the island in turn, each at the latest before the first of its joints is evaluated, while
+/// both are in the cache.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
@@ -145,14 +147,14 @@ template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
 /// Returns |C_q a + wanted| of joint j for the accelerations a of an evaluation, m/s^2; for a one-sided joint
 /// max(0, -(C_q a + wanted)). The result is zero within rounding, unless rows of the joint depend on rows
-/// that contradict them.
+/// that contradict them, or the forces of closing joints are limited (kMaxClosingRatio, solve_joints-inl.h).
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
 /// Returns the power of each kind of work (enum Work) that joints do, W.
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 
-/// Returns for each joint the number of its rows that depend on rows of other joints, after an evaluation.
+/// Returns for each joint the number of its rows that depend linearly on other rows, after an evaluation.
 std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work);
 
 /// Returns whether a joint with this mode acts (exerts forces).

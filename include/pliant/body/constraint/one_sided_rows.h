@@ -87,7 +87,8 @@ class OneSidedRows {
     x = now;
   }
 
-  /// Calls act(row, lambda) for each row with a push in the last meet(); returns their number.
+  /// Calls act(row, lambda) for each row with a push > 0 in the last satisfy(). Returns the number of these
+  /// rows.
   template <class F>
   int for_each_pushed(F&& act) const {
     int count = 0;

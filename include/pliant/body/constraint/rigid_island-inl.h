@@ -24,7 +24,8 @@ namespace detail {
 /// pairs of joints are computed, for four parts at once.
 inline constexpr int kMaxArms = 16;
 
-/// Whether a joint is a ball joint of two different ends without prescribed motion.
+/// Whether a joint is a ball joint without prescribed motion between two different parts, or between a part
+/// and the world.
 inline bool is_undriven_ball(const JointModel& m) {
   if (dynamic_cast<const JointOf<Ball>*>(m.joint) == nullptr || m.driven) return false;
   return m.at[0].part != m.at[1].part;
@@ -388,8 +389,8 @@ void RigidIsland::for_each_part(F&& act) const {
 
 namespace detail {
 
-/// Largest number of iterations that close joints, and the ratio of two gaps above which an iteration is
-/// slow.
+/// Largest number of iterations that close joints, and the ratio of two successive gaps above which an
+/// iteration is slow.
 inline constexpr int kMaxClosingIterations = 8;
 inline constexpr double kSlowClosing = 0.5;
 /// Number of iterations that cost as much as a new factor.
@@ -397,7 +398,7 @@ inline constexpr int kIterationsPerFactor = 2;
 
 /// Iterates until the joints are closed. measure() returns the largest gap relative to the allowed one.
 /// correct(gap, ratio) does one iteration; ratio: this gap over the gap before (0 at first). Returns false if
-/// correct() returns false, or after kMaxClosingIterations.
+/// correct() returns false, if a gap is not finite, or after kMaxClosingIterations.
 template <class Measure, class Correct>
 bool iterate_closing(Measure&& measure, Correct&& correct) {
   double before = std::numeric_limits<double>::infinity();

@@ -48,16 +48,17 @@ struct RigidWorkspace {
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts
-  VecX<double> lambda;               ///< rows of the joints, then their forces
+  VecX<double> lambda;               ///< rows of the joints; after solve_forces(), W_c^-1 times the rows
   Eigen::Matrix<double, 7, Eigen::Dynamic> q_before;  ///< coordinates before the joints are closed
   Eigen::Matrix<double, 6, Eigen::Dynamic> v_before;  ///< velocities before the joints are closed
 };
 
 class RigidIsland {
  public:
-  /// Whether an island can be evaluated as a rigid island. Its parts must be rigid, without drag and with at
-  /// most kMaxArms joints each (rigid_island-inl.h). All its joints must be ball joints between two parts, or
-  /// between a part and a fixed point. The joint system must be solved by blocks.
+  /// Whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in all six
+  /// velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its joints must
+  /// be ball joints between two parts, or between a part and a fixed point. The joint system must be solved
+  /// by blocks.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
@@ -80,13 +81,14 @@ class RigidIsland {
   };
   /// Projects coordinates and velocities onto C = 0 and C_dot = 0. Uses the factor of W_c of the last
   /// evaluation, or a new factor if that saves iterations. Returns false, with q and v unchanged, if the
-  /// iteration converges slowly.
+  /// iteration converges slowly or is not finite.
   bool close(const Island& island, const Rounding& allowed, BlockFactor<double>& W_c, RigidWorkspace& now,
              VecX<double>& q, VecX<double>& v) const;
 
   /// Adds impulses to v that close the joints at the end of a step of length h (s). The impulses act at the
   /// configuration of the last evaluation and are found with its factor. q_end() returns the coordinates at
-  /// the end for the present v. Returns false, with v unchanged, if the iteration converges slowly.
+  /// the end for the present v. Returns false, with v unchanged, if the iteration converges slowly or is
+  /// not finite.
   bool close_ahead(const Rounding& allowed, double h, const BlockFactor<double>& W_c, RigidWorkspace& now,
                    VecX<double>& v, const std::function<const VecX<double>&()>& q_end) const;
 

@@ -152,7 +152,7 @@ class IslandForces {
   const Island& island_;
   Workspace<S>& work_;
   ConstraintWorkspace<S>& joints_;
-  Group<S, Eigen::Dynamic> group_, closed_;  ///< with all joints that act; with the closed joints only
+  Group<S, Eigen::Dynamic> group_, closed_;  ///< of all joints that act, and of the closed ones only
   Vectors& kept_;
 };
 

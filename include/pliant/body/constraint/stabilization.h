@@ -15,8 +15,8 @@ enum class BaumgarteRule {
   automatic,        ///< step_consistent for semi-implicit Euler, critical for all other methods
   free,             ///< alpha = stab_alpha, beta = stab_beta; stab_beta = 0 is an error: no gap would close
   critical,         ///< alpha = beta = rate: from rest C decays as (1 + rate t) e^(-rate t)
-  step_consistent,  ///< r = e^(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): each step
-                    ///< multiplies C by r
+  step_consistent,  ///< r = e^(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): with
+                    ///< semi-implicit Euler, both roots of the discrete equation are r
 };
 
 /// The gains of Baumgarte's equation.

@@ -20,8 +20,8 @@ struct Evaluation {
   const State* modes = nullptr;
   /// The evaluation whose modes, pushed limits and taut strings a derivative keeps; nullptr otherwise.
   const Workspace<double>* fixed_modes = nullptr;
-  /// Whether only v_dot, power and the factors of W_c = C_q M^-1 C_q^T are computed. Sleeping parts are
-  /// skipped then.
+  /// Whether the caller needs only v_dot, power and the factors of W_c = C_q M^-1 C_q^T. The stages then skip
+  /// sleeping parts (unless loads need their positions) and may use rigid islands.
   bool rates_only = false;
   Vec3<double> gravity = dynamics.model().body().gravity_at(t);  ///< m/s^2, world
 
@@ -29,17 +29,17 @@ struct Evaluation {
   const PartModel& part(int i) const { return model().parts()[static_cast<std::size_t>(i)]; }
   PartWorkspace<S>& part_work(int i) const { return work.parts[static_cast<std::size_t>(i)]; }
 
-  /// Whether the stages leave a sleeping part out.
+  /// Whether part i sleeps, and the stages leave it out.
   bool skips(int i) const { return rates_only && modes != nullptr && sleeps(*modes, i); }
-  /// Whether the stages leave a sleeping island out; all parts of an island sleep together.
+  /// Whether an island sleeps, and the stages leave it out. All parts of an island sleep together.
   bool skips(const Island& island) const { return skips(island.parts.front()); }
   /// Whether an island is evaluated as a rigid island (constraint/rigid_island.h).
   bool uses_rigid(const Island& island) const { return uses_rigid(island.rigid); }
   /// Whether a part is evaluated with its rigid island; the general stages evaluate only its loads then.
   bool uses_rigid(const PartModel& m) const { return uses_rigid(m.rigid_island); }
-  /// Whether the parts of an island are evaluated together with its joints, each just before the first joint
-  /// that needs it, while both are in the cache. This is impossible with loads, which need the positions of
-  /// all parts first, and with threads, among which the parts are divided.
+  /// Whether the parts of an island are evaluated together with its joints: in turn, each at the latest
+  /// before the first joint that needs it, while both are in the cache. This is impossible with loads, which
+  /// need the positions of all parts first, and with threads, among which the parts are divided.
   bool with_joints(const Island& island) const {
     return dynamics.pool() == nullptr && !island.loaded && !uses_rigid(island);
   }

@@ -92,7 +92,8 @@ class LoadStage {
     if (m.torque->frame == Frame::body) torque = (e_.part_work(m.part).R * torque).eval();
     turn(m.against, -torque, Frame::world);
   }
-  /// Adds a torque on a part and its power.
+  /// Adds a torque to f of a part, and its power to work.power. A torque on a part without coordinates has no
+  /// effect.
   void turn(int part, Vec3<S> torque, Frame frame) {
     PartWorkspace<S>& w = e_.part_work(part);
     if (e_.part(part).q0 < 0) return;

@@ -126,6 +126,8 @@ void evaluate_positions(const PartModel& m, double t, const VecX<S>& q, const Ve
 // Stage 2: mass.
 
 /// Stage 2: M and g_q of Eq. (11). M of a rigid part stays in the workspace from one evaluation to the next.
+/// A part that deforms locally has its masses from LocalDeformation::masses(), and no g_q: stage 3 adds the
+/// inertial forces.
 template <class S>
 void evaluate_mass(const PartModel& m, PartWorkspace<S>& w) {
   const Vec3<S> omega = w.v_r.template segment<3>(3);
