@@ -19,8 +19,8 @@ class ThreadPool {
   int threads() const;
   /// Calls task(i) for 0 <= i < n, in any order, and returns when all calls have ended. If tasks throw, run()
   /// rethrows the exception of the task with the lowest i. A call of run() from within a task runs all its
-  /// tasks in the calling thread. In the calling thread alone, tasks run in order, and a task that throws is
-  /// the last one.
+  /// tasks in the calling thread. If all tasks run in the calling thread, they run in order, and the tasks
+  /// after one that throws do not run.
   void run(int n, const std::function<void(int)>& task);
 
  private:

@@ -21,7 +21,7 @@ struct ComplementarityResult {
 inline constexpr int kMaxLimitRows = 2 * kMaxGlobal;
 
 /// Returns the solution of the convex problem min 1/2 lambda^T W lambda + b^T lambda over lambda >= 0, by an
-/// active-set method. W: n x n; b: n. A row is active if its slack is zero by its lambda. The most violated
+/// active-set method. W: n x n; b: n. The lambda of an active row keeps its slack at zero. The most violated
 /// row becomes active first; other rows can be released on the way. The objective decreases with every
 /// change, so the method terminates; in any case it ends after about 50 n + 50 linear systems. Rows that
 /// depend on the active ones (rank-deficient W) need no lambda of their own. Rows that contradict the active

@@ -19,8 +19,8 @@ class CoulombLaw {
   Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction, which is
-  /// the result if s grows beyond all numbers.
+  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction. It is the
+  /// result if s exceeds the range of a double.
   Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;

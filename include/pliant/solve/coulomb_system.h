@@ -52,7 +52,7 @@ class CoulombSystem {
   /// zero. The caller fills it before the next add function. The impulse of a contact without pushes is zero.
   Push add_push(int mover);
 
-  /// Removes the pushes of the last contact.
+  /// Removes the pushes of the last contact. No push can be added to this contact afterwards.
   void drop_pushes();
 
   int movers() const { return static_cast<int>(movers_.size()) - 1; }  ///< number of movers

@@ -19,8 +19,8 @@ enum class RankRule {
   /// A row is dependent if its relative pivot is at most Pivots::kVanished.
   decide,
   /// The dependent rows are those of the previous factorisation, and other rows whose relative pivot is at
-  /// most
-  /// Pivots::kRounding. Within a step, joints are slightly open, so that dependent rows can look independent.
+  /// most Pivots::kRounding. Within a step, joints are slightly open, so that dependent rows can look
+  /// independent.
   keep,
   /// A row is dependent if its relative pivot is at most Pivots::kRounding. This rule is for configurations
   /// near a singular one.
