@@ -21,8 +21,8 @@ class EigenFactor final : public SparseFactor {
     return true;
   }
 
-  /// Solves for all right-hand sides together. They are the rows of y, so that each entry of L is loaded
-  /// once.
+  /// Solves for several right-hand sides together: they are the rows of y_, and each entry of L is loaded
+  /// only twice.
   void do_solve(Eigen::Ref<Eigen::MatrixXd> x) override {
     if (x.cols() == 1) {
       x = ldlt_.solve(x).eval();

@@ -215,7 +215,8 @@ class Parser {
     fault_after_operand();
   }
 
-  /// Appends an instruction. If all its arguments are numbers, appends the result in their place.
+  /// Appends an instruction. If all its arguments are numbers, replaces them by the result; throws
+  /// FormulaError if the result is not finite. place: byte of the text to report.
   void emit(const Instruction& instruction, std::size_t place) {
     const std::size_t n = static_cast<std::size_t>(arguments(instruction.code));
     bool constant = n > 0;

@@ -1,4 +1,5 @@
-// Thinning of a quadrature rule by elimination along null vectors of its moment matrix.
+// Thinning of a quadrature rule by elimination along null vectors of F^T, the transpose of the matrix of the
+// contributions F(i, k) of the nodes.
 #include <pliant/math/thin_rule.h>
 
 #include <cmath>

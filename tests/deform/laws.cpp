@@ -31,8 +31,8 @@ Numbers<Deform> defaults() {
     b[k] = Deform::parameters[static_cast<std::size_t>(k)].standard;
   return b;
 }
-/// Returns random parameters in the dynamic range. Tapers are at most 0.95, because a full taper has no
-/// inverse at its tip.
+/// Returns random parameters in the dynamic range. |tx| and |ty| of a taper are at most 0.95, because a full
+/// taper (|tx| or |ty| = 1) has no inverse at its tip.
 template <class Deform>
 Numbers<Deform> draw(Draws& draws) {
   Numbers<Deform> b;
@@ -183,7 +183,7 @@ TEST_CASE("N11: a bend and its derivatives are continuous at zero bend", "[defor
   }
 }
 
-TEST_CASE("a bend rotates the end of the axis by its angle, and conserves the length of the axis",
+TEST_CASE("a bend rotates the tangent at the end of the axis by its angle, and does not stretch it",
           "[deform]") {
   for (double angle : {0.3, -1.0, 2.0, 3.1})
     for (double direction : {0.0, 0.7, -2.0}) {

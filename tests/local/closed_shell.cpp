@@ -126,8 +126,8 @@ double slope(double coarse, double fine, double ratio = 2) {
 }
 
 /// Returns whether the modes of the mesh near the frequency of degree n belong to this degree only. From n =
-/// 4 on, modes of short waves are between them. For nu = 0, torsion of degree 2 has the frequency of
-/// breathing.
+/// 4 on, modes of the mesh with short waves have frequencies between those of this degree. For nu = 0,
+/// torsion of degree 2 has the frequency of breathing.
 bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }

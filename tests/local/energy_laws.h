@@ -68,7 +68,8 @@ inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   CHECK((K - Eigen::SparseMatrix<double>(K.transpose())).norm() <= 1e-13 * K.norm());
 }
 
-/// Checks that threads do not change a bit. The mesh needs more elements than a range (element_batches.h).
+/// Checks that threads do not change a bit. The mesh needs more elements than one range of for_ranges has
+/// (element_batches.h).
 inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   Draws draws(9);
   const VecX<double> dx = random_vector(draws, x.size());

@@ -127,10 +127,11 @@ TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh 
 
 TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh of a ball", "[local][long]") {
   // The spectrum is that of the rectangle with poles. Rings around a pole have 8, 16, ... nodes; on the first
-  // ring they are pi/4 apart in v, however fine the mesh is. A mode with m >= 1 is proportional to the
-  // distance x from the pole. Its linear interpolation between nodes of ring k, which are pi/(4k) apart, has
-  // an error of x/k^2. The slope across the ring therefore errs by 1/k on a strip one edge wide, which sums
-  // to the first power of the edge length. Modes with m = 0 do not depend on v.
+  // ring they are pi/4 apart in v, however fine the mesh is. Near a pole, a mode with m >= 1 is proportional
+  // to the distance x from the pole. On ring k, x = k h with the edge length h. The linear interpolation
+  // between the nodes of this ring, which are pi/(4k) apart, has an error of the order of x/k^2 = h/k. In a
+  // strip of width h beside the ring, the slope across the ring therefore has an error of the order of 1/k.
+  // Over all rings, the error of omega^2 is of first order in h. Modes with m = 0 do not depend on v.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 12> exact{0, 1, 2, 2, 4, 5, 5, 5, 5, 8, 8, 9};
   const auto along_u = [](int i) { return i == 1 || i == 4 || i == 11; };  // modes with m = 0

@@ -17,9 +17,9 @@
 
 namespace pliant::test {
 
-/// Returns the mean omega^2 of the `count` modes below 2 `near` that have the largest components in the space
-/// of U, after inverse iterations of U and V at `near`. V contains fields of neighbouring modes, which would
-/// mix with the wanted modes.
+/// Returns the mean omega^2 of the `count` modes with omega^2 < 2 `near` that have the largest components in
+/// the space of U, after inverse iterations of U and V at omega^2 = `near`. V contains fields of neighbouring
+/// modes, which would mix with the wanted modes.
 inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double near,
                             const MatX<double>& U, const MatX<double>& V, int count) {
   Eigen::SparseMatrix<double> A = K;
@@ -47,8 +47,8 @@ inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<dou
   return sum / count;
 }
 
-/// Returns fields of 2n + 1 surface harmonics Y of degree n on the sphere: Y along the normal, and grad Y. Y
-/// = Re (a.X)^n with a complex vector a, a.a = 0. For n = 0, the only field is the normal.
+/// Returns fields of 2n + 1 surface harmonics Y of degree n on the sphere: for each Y, Y along the normal,
+/// then grad Y / n. Y = Re (a.X)^n with a complex vector a, a.a = 0. For n = 0, the only field is the normal.
 inline MatX<double> harmonic_fields(const ShellMesh& mesh, int n) {
   Draws draws(11);
   const int count = 2 * n + 1;

@@ -43,8 +43,8 @@ double lamb_S2(double nu) {
   return low;
 }
 
-/// Returns the largest relative error of the five spheroidal modes of order 2 (S2): the lowest ten modes
-/// without the five torsional modes of order 2 (T2).
+/// Returns the largest relative error of the five spheroidal modes of order 2 (S2). After the six rigid
+/// motions the lowest modes are the five torsional modes of order 2 (T2), then S2.
 template <class Element>
 double S2_error(const NodalEnergy& energy, const SolidMesh& mesh, double nu) {
   const test::Sparse M = Element::n_nodes == 4

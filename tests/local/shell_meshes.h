@@ -53,8 +53,8 @@ inline ShellMesh icosphere(int levels, double radius) {
   return shell_mesh(X, triangles);
 }
 
-/// Returns a rectangle a x b in the plane z = 0 about the origin, with irregular triangles and straight
-/// edges.
+/// Returns a rectangle a x b in the plane z = 0 about the origin, of n x m irregular cells of two triangles
+/// each. Its boundary is straight.
 template <class Draws>
 ShellMesh irregular_sheet(int n, int m, double a, double b, Draws&& draws) {
   std::vector<Vec3<double>> X;

@@ -107,8 +107,8 @@ double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
       (Kind<EnrichedTetrahedron, LinearLaw>), (Kind<EnrichedTetrahedron, StVenantKirchhoff>),   \
       (Kind<EnrichedTetrahedron, NeoHookean>), (Kind<EnrichedTetrahedron, Corotated>)
 
-TEMPLATE_TEST_CASE("forces are gradients of the energy, derivatives those of the forces", "[solid]",
-                   PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("forces are minus the gradients of the energy, derivatives are those of the forces",
+                   "[solid]", PLIANT_ALL_KINDS) {
   const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
@@ -159,8 +159,9 @@ TEMPLATE_TEST_CASE("a uniform strain gives equal stress in all elements", "[soli
   }
 }
 
-TEST_CASE("elements of 15 nodes balance a uniform stress to rounding, unless the rest shape is deformed",
-          "[solid]") {
+TEST_CASE(
+    "elements of 15 nodes balance a uniform stress to rounding, unless taper and bend deform the rest shape",
+    "[solid]") {
   // The force on a node is an integral of degree 3 over elements with quadratic geometry, for which the rule
   // of degree 5 is exact. A boundary bubble adds nothing, by the symmetry of the rule. In the undeformed
   // shape Solid places face and middle nodes without bubbles; taper and bend create bubbles, so that the

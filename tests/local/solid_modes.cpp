@@ -195,8 +195,8 @@ struct Bar {
       return f(X[2] / L + 0.5) * Vec3<double>(-X[1], X[0], 0);
     });
   }
-  /// Modes of the Euler-Bernoulli beam along x and y, root = beta L; the end s = 0 is free or clamped, s = 1
-  /// is free.
+  /// Modes of the Euler-Bernoulli beam along x and y. root: wave number times L. The end s = 0 is free or
+  /// clamped; the end s = 1 is free.
   MatX<double> bending(double root, bool clamped) const {
     const double sign = clamped ? 1 : -1, fraction = (std::cosh(root) + sign * std::cos(root)) /
                                                      (std::sinh(root) + sign * std::sin(root));
@@ -263,9 +263,9 @@ double bending_order(const FreeBar& coarse, const FreeBar& fine, std::size_t k, 
 }
 
 /// Relative errors of a bar that is clamped at one end. Torsion: the first two frequencies against (n - 1/2)
-/// pi c / L, which is exact for the solid. Stretching: the first two frequencies against this formula, which
-/// is exact for nu = 0 (no lateral contraction at the clamp). Bending: the first three frequencies against
-/// Timoshenko's beam with nu = 0.3.
+/// pi c / L with the speed c of shear waves, which is exact for the solid. Stretching: the first two
+/// frequencies against this formula with c = sqrt(E / rho), which is exact for nu = 0 (no lateral contraction
+/// at the clamp). Bending: the first three frequencies against Timoshenko's beam with nu = 0.3.
 struct ClampedErrors {
   std::array<double, 2> torsion, stretch;
   std::array<double, 3> bending;

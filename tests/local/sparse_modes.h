@@ -40,9 +40,10 @@ inline Sparse in_space(const VecX<double>& masses) {
   return Sparse(VecX<double>(masses.replicate(3, 1)).asDiagonal());
 }
 
-/// Computes omega^2 of given fields on a mesh. One solution of (K + below M) U' = M U smooths the fields on
-/// the mesh. U' contains other modes of nearby frequencies only. Each value is a weighted mean of their
-/// omega^2, also if close modes of the mesh mix.
+/// Computes omega^2 of given fields U on a mesh. The solution U' of (K + below M) U' = M U contains less of
+/// the modes of high frequency than U. Each value is a mean of omega^2 over the modes of the mesh, weighted
+/// by their shares in a field of U'. It is accurate even if a mode of the mesh mixes with others of nearby
+/// frequency. below: 1/s^2, of the size of the wanted omega^2.
 class SmoothedFields {
  public:
   SmoothedFields(Sparse K, Sparse M, double below) : K_(std::move(K)), M_(std::move(M)) {

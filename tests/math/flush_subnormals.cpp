@@ -1,4 +1,4 @@
-// Flushing of subnormal numbers during steps, equally in all threads.
+// The guard FlushSubnormals, in one thread and in the threads of a pool.
 #include "catch.h"
 
 #include <limits>

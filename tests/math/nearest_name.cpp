@@ -23,7 +23,7 @@ TEST_CASE("edit distance counts insertions, deletions, replacements and swaps") 
   CHECK(edit_distance("kitten", "sitting") == 3);
 }
 
-TEST_CASE("the nearest name is within two edits, and is the first of equally near names") {
+TEST_CASE("the nearest name is within two edits (one for short words), and the first of equally near names") {
   CHECK(nearest_name("masss", {"density", "mass", "max"}) == "mass");
   CHECK(nearest_name("Sphere", {"sphere"}) == "sphere");
   CHECK(nearest_name("superelipsiod", {"superellipsoid", "ellipsoid"}) == "superellipsoid");

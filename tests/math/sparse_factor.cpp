@@ -1,5 +1,5 @@
-// The factorisations of Eigen and CHOLMOD, simplicial and supernodal: equal solutions, and equal reports of
-// singular matrices.
+// The factorisation of Eigen, and those of CHOLMOD, simplicial and supernodal: accurate solutions, and the
+// row of a bad pivot.
 #include <pliant/math/sparse_factor.h>
 #include <pliant/solve/cholmod_factor.h>
 
@@ -116,7 +116,7 @@ TEST_CASE("a pivot that fails is reported with its row") {
       CHECK_FALSE(factor->factor(A));
       CHECK(factor->bad_pivot().row == 2);
     }
-    SECTION(backend.name + ": a row that repeats another one leaves a pivot of rounding size") {
+    SECTION(backend.name + ": a row that is a multiple of another one leaves a pivot of rounding size") {
       A.coeffRef(1, 0) = 0.3;
       A.coeffRef(0, 0) = 0.1;
       A.coeffRef(1, 1) = 0.9;

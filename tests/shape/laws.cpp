@@ -57,7 +57,8 @@ double size_of(const ShapeVec<Shape, double>& a) {
     size = std::max(size, Shape::template e<double>(m, a).norm());
   return size;
 }
-/// Returns the step of finite differences for a parameter of value a: 1e-3 of its scale.
+/// Returns the step of finite differences for a parameter of value a: 1e-3 of |a|, or of 0.1 if |a| is
+/// smaller.
 Long step_of(double a) {
   return 1e-3L * std::max(std::abs(a), 0.1);
 }
@@ -301,8 +302,8 @@ TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with finite differences", "
   CHECK(n_smooth > 0.9 * 200);
 }
 
-TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and on the axis", "[shape]",
-                        AllShapes) {
+TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and on the x and z axes",
+                        "[shape]", AllShapes) {
   using Shape = TestType;
   const ShapeVec<Shape, double> a = defaults<Shape>();
   const ShapeInterfaceOf<Shape> face;
@@ -315,8 +316,8 @@ TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and
     }
 }
 
-TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and increases along every ray", "[shape]",
-                        AllShapes) {
+TEMPLATE_LIST_TEST_CASE("N05: outside the solid, the gauge never overflows and increases along every ray",
+                        "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(6);
   for (double eps : {0.02, 0.1, 1.0, 5.0}) {
@@ -336,7 +337,7 @@ TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and increases along ever
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("half_height is the extent along z", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("half_height is half the extent along z", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(7);
   for (int trial = 0; trial < 10; ++trial) {

@@ -111,7 +111,7 @@ TEST_CASE("block factor: a chain and a tree have no fill-in", "[block_factor]") 
   }
 }
 
-TEST_CASE("block factor: the remaining full block is dense if that is faster", "[block_factor]") {
+TEST_CASE("block factor: the remaining full block is dense if it has at least 18 rows", "[block_factor]") {
   auto all_pairs = [](int first, int last) {
     std::vector<std::pair<int, int>> edges;
     for (int v = first; v < last; ++v)

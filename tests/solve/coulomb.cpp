@@ -46,7 +46,10 @@ TEST_CASE("the impulse of a contact obeys Coulomb's law", "[coulomb]") {
   CHECK(slid > 1000);
 }
 
-TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and slides above", "[coulomb]") {
+TEST_CASE(
+    "a point mass that hits a plane sticks if its tangential velocity is at most mu times its normal "
+    "velocity, else it slides",
+    "[coulomb]") {
   const Mat3<double> W = Mat3<double>::Identity() / 2;  // of a point mass of 2 kg
   for (const double along : {0.3, 0.7}) {
     const Vec3<double> p = solve_coulomb(W, {-1, along, 0}, 0.5);

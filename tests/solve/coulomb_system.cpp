@@ -17,16 +17,16 @@ using test::Draws;
 
 namespace {
 
-/// Masses in a line. Each has several contacts with the next one, with normals near the line; the first also
-/// has contacts with a wall.
+/// Masses in a line. Each has `contacts` contacts with the next one, with normals near the line; the first
+/// also has this number of contacts with a wall.
 struct LineOfMasses {
   CoulombSystem system;
   std::vector<double> mass;
   VecX<double> x;
   double mu;
 
-  /// size: velocities of each mover; 3 for point masses, 6 for bodies of unit inertia with contacts away from
-  /// their centres.
+  /// size: number of velocities of each mover; 3 for point masses, 6 for bodies of unit rotational inertia
+  /// with contacts away from their centres.
   LineOfMasses(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
     for (int i = 0; i < movers; ++i) {
       system.add_mover(size);
@@ -161,7 +161,7 @@ TEST_CASE("unconnected movers do not affect each other's impulses", "[coulomb]")
   CHECK(both.x.tail<3>().norm() < 1e-11);
 }
 
-TEST_CASE("a warm start at the solution needs no further iteration", "[coulomb]") {
+TEST_CASE("a warm start at the solution needs at most four sweeps", "[coulomb]") {
   Draws draws(11), copy(11);
   LineOfMasses line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, copy);
   const CoulombResult first = line.system.solve(line.x);

@@ -26,9 +26,9 @@ struct Taper {
   }
 
  private:
-  /// Returns the width of a section relative to the middle section, or 1e-10 if the absolute width is
-  /// smaller. The width is zero at the tip of a full taper; with the bound, the inverse maps the tip to the
-  /// axis.
+  /// Returns `width`, the width of a section relative to the middle section, or 1e-10 if |width| is at most
+  /// 1e-10. The width is zero at the tip of a full taper (|tx| or |ty| = 1); with the bound, the inverse maps
+  /// the tip to the axis.
   template <class T>
   static T bounded_width(const T& width) {
     const T min_width(1e-10);

@@ -10,9 +10,9 @@
 namespace pliant {
 
 /// Every material law, here and in local/solid, has these members: `of`, the argument of the energy;
-/// `constant`, see below; density(), which returns W; stress(), which returns P = dW/dH (dW/dF for large
-/// deformation); stress_along(), which returns the derivative of P along dH. T: double, Pack or a dual
-/// number.
+/// `constant`, see below; Lame's constants lambda and mu (Pa), which viscous damping uses; density(), which
+/// returns W; stress(), which returns P = dW/dH (dW/dF for large deformation); stress_along(), which returns
+/// the derivative of P along dH (or dF). T: double, Pack or a dual number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
   /// Whether the derivative of P does not depend on the gradient.

@@ -6,20 +6,21 @@
 
 namespace pliant {
 
-/// Returns an orthonormal basis of the columns of A, n x r. A: n x m, of rank m; then r = m.
+/// Returns an orthonormal basis (n x m) of the space that the columns of A span. A: n x m, of rank m.
 MatX<double> column_basis(const MatX<double>& A);
-/// Returns an orthonormal basis of the columns of A, n x r. Columns are pivoted; r is the number of pivots
-/// larger than `dependent` times the largest pivot.
+/// Returns an orthonormal basis (n x r) of the space that the columns of A span, for A of any rank. The QR
+/// factorisation pivots columns; the rank r is the number of pivots larger than `dependent` times the largest
+/// pivot, in absolute value.
 MatX<double> column_basis(const MatX<double>& A, double dependent);
 
-/// Returns an orthonormal basis of the vectors orthogonal to all columns of A, n x (n - m). A: n x m, of rank
-/// m.
+/// Returns an orthonormal basis, n x (n - m), of the vectors that are orthogonal to all columns of A. A:
+/// n x m, of rank m.
 MatX<double> complement_basis(const MatX<double>& A);
-/// Returns an orthonormal basis of the vectors orthogonal to all columns of A, n x (n - r), with the rank r
-/// of column_basis(A, dependent).
+/// Returns an orthonormal basis, n x (n - r), of the vectors that are orthogonal to all columns of A. r is
+/// the rank that column_basis(A, dependent) finds.
 MatX<double> complement_basis(const MatX<double>& A, double dependent);
 
-/// Returns the x that minimises |A x - b|.
+/// Returns an x that minimises |A x - b|. It is the only one if the columns of A are independent.
 VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b);
 
 }  // namespace pliant

@@ -17,7 +17,8 @@ using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
 
 inline constexpr int kSmallStack = 16;
-/// Each level of nesting adds at most five numbers to the stack: a sum, a product, a base and two arguments.
+/// Each level of nesting adds at most five numbers to the stack: the left operands of a sum and of a product,
+/// the base of a power, and two earlier arguments of a function.
 inline constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
 
 /// Returns the sign of x just after t: that of its value, or, if this is 0, that of the first derivative that
@@ -40,22 +41,23 @@ inline Taylor tan(const Taylor& a) {
   return chain(a, y, slope, 2 * y * slope);
 }
 
-/// Returns a^n. If the factor n or n - 1 of a derivative is zero, the derivative is 0 for every a.
+/// Returns a^n for a constant exponent. If the factor n or n - 1 in a derivative of a^n is zero, this
+/// derivative is 0 for every a.
 inline Taylor power(const Taylor& a, double n) {
   const double slope = n == 0 ? 0 : n * std::pow(a.v, n - 1);
   const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.v, n - 2);
   return chain(a, std::pow(a.v, n), slope, curvature);
 }
 
-/// Returns a^b for a variable exponent.
+/// Returns a^b for a variable exponent. The derivatives contain log a, so they are not finite for a <= 0.
 inline Taylor power(const Taylor& a, const Taylor& b) {
   const Taylor exponent = b * log(a);
   const double value = std::pow(a.v, b.v);
   return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
 }
 
-/// Returns the argument that is larger just after t for `sign` 1, or smaller for -1; NaN if one of them is
-/// NaN.
+/// Returns the argument that is larger just after t if sign is 1, or smaller if sign is -1; the first of two
+/// equal ones; NaN if one of them is NaN.
 inline Taylor choose(const Taylor& x, const Taylor& y, double sign) {
   const Taylor difference = x - y;
   if (std::isnan(difference.v)) return difference;
@@ -169,8 +171,8 @@ inline bool branch(const Instruction& instruction, const Taylor* x) {
   }
 }
 
-/// Evaluates a program at t with a stack of Size numbers. Calls see(instruction, arguments) for each
-/// instruction.
+/// Evaluates a program at t with a stack of Size numbers. Before each instruction it calls see(instruction,
+/// arguments).
 template <int Size, class See>
 Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
   const Taylor time(t, 1.0, 0.0);

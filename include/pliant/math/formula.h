@@ -19,7 +19,7 @@
 
 namespace pliant {
 
-/// An error in the text of a formula: its place, and the text that was expected there.
+/// An error in the text of a formula: its place and its reason.
 class FormulaError : public std::runtime_error {
  public:
   /// offset: byte of the text, from 0. reason: a complete message (the error, the expectation, the nearest
@@ -56,16 +56,17 @@ class Formula {
   /// or if a subexpression without t has no finite value (1/0).
   explicit Formula(const std::string& text);
 
-  /// Returns the value and the first and second derivative with respect to t. At a kink (abs, min, max, step,
-  /// the ends of smoothstep) the derivatives are one-sided, towards larger t. The result is not finite where
-  /// the formula is not (1/t at 0); the caller checks this.
+  /// Returns the value and the first and second derivative with respect to t. At a kink of abs, min or max
+  /// the derivatives are one-sided, towards larger t. At a jump of step, or of smoothstep(a, a, x), the
+  /// derivatives are zero. The result is not finite where the formula is not (1/t at 0); the caller checks
+  /// this.
   Taylor2<double> at(double t) const;
 
   /// Returns whether the formula does not contain t.
   bool is_constant() const;
   /// Returns whether the formula contains abs, min, max, step or smoothstep.
   bool has_branches() const { return has_branches_; }
-  /// Returns a hash of the branches that abs, min, max, step and smoothstep use at t.
+  /// Returns a hash of the branches that abs, min, max, step and smoothstep(a, a, x) use at t.
   std::uint64_t branches(double t) const;
 
   /// The operations of the postfix program.

@@ -33,7 +33,7 @@ struct ParameterSpec {
   const char* name;
   double standard;  ///< default value
   Range frozen;     ///< admissible values of a constant parameter
-  Range dynamic;    ///< admissible values of a degree of freedom (one-sided limits)
+  Range dynamic;    ///< admissible values of a degree of freedom; its ends are one-sided constraints
   bool relative;    ///< whether the dynamic range is in multiples of the rest value
   Quantity quantity;
   const char* meaning;

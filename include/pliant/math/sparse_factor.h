@@ -39,13 +39,13 @@ class SparseFactor {
   void analyse(const SparseMatrix& A, Eigen::Index n_positive);
 
   /// Computes the numeric factorisation of A. Throws std::invalid_argument if A does not have the analysed
-  /// pattern. Returns false if A is not safely definite: a pivot is not finite, or a pivot times the sign of
-  /// its row is not above kPivotTolerance |A(row, row)|. bad_pivot() then returns the first such pivot in the
-  /// order of elimination.
+  /// pattern. Returns false if a pivot is not finite, or if the pivot times the sign of its row (-1 for a row
+  /// from n_positive on, else 1) is not above kPivotTolerance |A(row, row)|. bad_pivot() then returns the
+  /// first such pivot in the order of elimination.
   [[nodiscard]] bool factor(const SparseMatrix& A);
 
-  /// Overwrites each column b of x, n rows, with A⁻¹ b. Throws std::logic_error unless the last factor()
-  /// succeeded, and std::invalid_argument if x does not have n rows.
+  /// Overwrites each column b of x with A⁻¹ b. x has as many rows as A. Throws std::logic_error unless the
+  /// last factor() succeeded, and std::invalid_argument if x has another number of rows.
   void solve(Eigen::Ref<Eigen::MatrixXd> x);
 
   /// Returns the pivots, in the order of the rows of A. Valid after a factor() that succeeded.
@@ -57,13 +57,14 @@ class SparseFactor {
   /// Returns the number of entries of L, including its diagonal. Valid after a factor() that succeeded.
   virtual Eigen::Index nonzeros() const = 0;
 
-  /// Relative size of the pivot of a redundant row: rounding leaves such a pivot at this fraction of the
-  /// diagonal entry, and not at zero.
+  /// A pivot of at most this fraction of its diagonal entry counts as zero. A redundant row has such a pivot:
+  /// exact arithmetic would give zero, but rounding leaves a small number.
   static constexpr double kPivotTolerance = 1e-13;
 
  protected:
   SparseFactor() = default;
-  /// Returns whether the pivot of a row of A is large enough; otherwise stores it for bad_pivot().
+  /// Stores the pivot of a row of A for pivots(). Returns whether the pivot is finite, has the sign of the
+  /// row and is large enough; otherwise stores it for bad_pivot().
   bool accept_pivot(Eigen::Index row, double pivot);
   bool quasi_definite() const { return n_positive_ < size(); }
 

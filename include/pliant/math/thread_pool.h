@@ -10,7 +10,7 @@ namespace pliant {
 /// A fixed number of threads that run the tasks of one loop at a time.
 class ThreadPool {
  public:
-  /// threads >= 1. With 1 all tasks run in the calling thread.
+  /// threads >= 1, including the thread that calls run(). With 1 all tasks run in the calling thread.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -18,8 +18,9 @@ class ThreadPool {
 
   int threads() const;
   /// Calls task(i) for 0 <= i < n, in any order, and returns when all calls have ended. If tasks throw, run()
-  /// rethrows the exception with the lowest i. A call from within a task runs all its tasks in the calling
-  /// thread.
+  /// rethrows the exception of the task with the lowest i. A call of run() from within a task runs all its
+  /// tasks in the calling thread. If all tasks run in the calling thread, they run in order, and the tasks
+  /// after one that throws do not run.
   void run(int n, const std::function<void(int)>& task);
 
  private:

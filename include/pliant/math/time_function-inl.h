@@ -1,7 +1,8 @@
-// Key frames: with a = (t_{i+1} - t)/h and b = (t - t_i)/h, the cubic between the keys i and i+1 is
+// Key frames: with h = t_{i+1} - t_i, a = (t_{i+1} - t)/h and b = (t - t_i)/h, the cubic between the keys i
+// and i+1 is
 //   y = a y_i + b y_{i+1} + ((a^3 - a) m_i + (b^3 - b) m_{i+1}) h^2/6,  m the second derivatives at the keys.
-// Equal slopes from both sides of each key give a tridiagonal system for m. An end is either natural (m = 0)
-// or has a given rate.
+// Equal slopes from both sides of each inner key give a tridiagonal system for m. The two ends are either
+// both natural (m = 0) or both have given rates.
 #pragma once
 
 #include <pliant/math/time_function.h>
@@ -19,7 +20,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Relative difference below which two values or two rates are treated as equal.
+/// Relative difference up to which two values or two rates are treated as equal. An end rate of a spline is
+/// compared with the steepest mean slope between two neighbouring keys.
 inline constexpr double kKinkRounding = 1e-12;
 
 struct SplineEndRates {
@@ -85,7 +87,8 @@ class SplineFunction final : public TimeFunction::Impl {
   std::vector<double> t_, y_, m_, kinks_;
 };
 
-/// A formula. Its kinks are found by bisection for changes of its branches.
+/// A formula. A change of its branches is located by bisection. It is a kink if the value or the rate jumps
+/// there.
 class FormulaFunction final : public TimeFunction::Impl {
  public:
   explicit FormulaFunction(Formula formula) : formula_(std::move(formula)) {}
@@ -117,7 +120,7 @@ class FormulaFunction final : public TimeFunction::Impl {
   }
 
  private:
-  /// Returns the kink between two adjacent floating-point times, if there is one.
+  /// Returns the kink between two adjacent floating-point times, or a Kink of infinite time if there is none.
   Kink between(double low, double high) const {
     constexpr double smooth = 8;  // tolerance, in units of the change of a smooth function
     const Taylor2<double> a = at(low), b = at(high);

@@ -50,8 +50,9 @@ class TimeFunction {
   Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(constant_); }
   double value(double t) const { return at(t).v; }
   bool is_constant() const { return impl_ == nullptr; }
-  /// Returns the first kink in the interval (after, until] (s). The search in a formula samples a few times
-  /// of the interval. It can miss kinks in a long interval; the interval of one step is short enough.
+  /// Returns the first kink in the interval (after, until] (s), or a Kink of infinite time. For a formula,
+  /// the search compares the branches of the formula at 5 times of the interval, the ends included. It can
+  /// miss kinks in a long interval; the interval of one step is short enough.
   Kink first_kink(double after, double until) const {
     return impl_ && after < until ? impl_->first_kink(after, until) : Kink();
   }
@@ -100,7 +101,7 @@ struct TimeVector {
     Vec3<double> rate;     ///< change / h, in units of the function per second
     double max_deviation;  ///< in the same units
   };
-  /// Returns the passage from t to t + h (s).
+  /// Returns the mean rate from t to t + h (s), and the largest deviation from it.
   MeanRate over(double t, double h) const;
 };
 

@@ -13,11 +13,11 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< 45 degrees wide, from an angle with sin = 0 or cos = 0; e varies as |sin|^eps or |cos|^eps
+    power,  ///< 45 degrees wide, from an angle with sin = 0 (or cos = 0); e varies as |sin|^eps (|cos|^eps)
   };
   Kind kind;
-  double from = 0, to = 0;         ///< angles of a smooth panel, rad
-  int sign_cos = 1, sign_sin = 1;  ///< signs of cos and sin on a power panel
+  double from = 0, to = 0;         ///< smooth and periodic panels: angles at the ends, rad
+  int sign_cos = 1, sign_sin = 1;  ///< power panel: signs of cos and sin on it
   bool along_sin = true;           ///< power panel: whether it begins at sin = 0 (else at cos = 0)
   double eps = 1;                  ///< power panel: exponent
 };

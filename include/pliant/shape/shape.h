@@ -8,8 +8,9 @@
 //   half_height(a)    h (metres), half the extent along z; deformations use zeta = z / h
 //   mesh              MeshPattern of the surface mesh
 //
-// Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. The closed form of a
-// shape is faster than the default of gauge and label, a Newton search, and exact at the poles.
+// Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. The default of gauge and
+// label is a Newton search, which needs a star-shaped solid. Closed forms in the shape are faster than this
+// search, and exact at the poles.
 //   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; never
 //                     overflows
 //   label(x, a)       material point at the position x, the inverse of e; requires gauge
@@ -18,7 +19,8 @@
 //   profile(a, moving), ring(a, moving)  quadrature panels along u and along v; e is smooth on each panel.
 //                     moving: whether an exponent is a degree of freedom
 //   ring_exponent(a)  exponent of the superellipse that a ring follows; a ring is a curve (u, w) = const
-//   RestMap           another shape with an equal surface; its map e generates the quadrature points
+//   RestMap           another shape with the same parameters and an equal surface; its map e generates the
+//                     quadrature points
 //   semi_axes(a)      for an ellipsoid: its semi-axes (metres). mesh_label must map the unit direction y to
 //                     the surface point with the coordinates y_i times semi-axis i
 //   half_sizes(a)     for a box about the origin: its half sizes (metres)

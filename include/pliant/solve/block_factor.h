@@ -1,7 +1,7 @@
 // Factorisation L D L^T of a symmetric positive semi-definite matrix of small blocks, for example of the
-// joint system W_c = C_q M^-1 C_q^T. The elimination works on blocks while the matrix is sparse, and on one
-// dense matrix when no remaining block is zero. Rows that depend on earlier rows are excluded (pivots.h). S
-// is double or Dual<1>.
+// joint system W_c = C_q M^-1 C_q^T. The elimination works on blocks while the matrix is sparse. It works on
+// one dense matrix when no remaining block is zero and at least kFewDense rows remain. Rows that depend on
+// earlier rows are excluded (pivots.h). S is double or Dual<1>.
 #pragma once
 
 #include <algorithm>
@@ -20,15 +20,16 @@ namespace pliant {
 template <class S>
 class BlockFactor {
  public:
-  /// Sets all blocks to zero. The pattern must outlive the factor. RankRule::keep has an effect only if the
-  /// pattern is the previous one; otherwise RankRule::decide applies.
+  /// Sets all blocks to zero. The pattern must exist until the last use of the factor, or until the next
+  /// clear(). RankRule::keep has an effect only if the pattern is the object of the previous call; otherwise
+  /// RankRule::decide applies.
   void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
     const bool changed = pattern_ != &pattern;
     pattern_ = &pattern;
     values_.assign(at(pattern.values()), S(0.0));
     pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// Sets a larger scale for the pivot of a row (see Pivots::raise_scale).
+  /// Sets a lower bound of the scale for the pivot of a row (see Pivots::raise_scale).
   void raise_scale(int row, double entry) { pivots_.raise_scale(row, entry); }
   /// Returns the entries of a block, by columns. offset: from BlockPattern::place.
   S* block(int offset) { return values_.data() + offset; }
@@ -95,7 +96,7 @@ class BlockFactor {
   bool excluded(int row) const { return pivots_.excluded(row); }
   /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
-  /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost.
+  /// Returns the smallest ratio of an accepted pivot to its scale (see Pivots::smallest).
   double smallest_pivot() const { return pivots_.smallest(); }
 
  private:

@@ -1,6 +1,7 @@
-// The pattern of a symmetric matrix of small blocks and of its factor L D L^T. It is computed once: the order
-// of elimination, the fill-in, the list of block products, and the last rows and columns, which are factored
-// as one dense matrix.
+// The pattern of a symmetric matrix of small blocks and of its factor L D L^T. A node is a group of rows, and
+// a block has the rows of one node and the columns of another; in the joint system a node is a joint. The
+// pattern is computed once: the order of elimination, the fill-in, the list of block products, and the last
+// rows and columns, which are factored as one dense matrix.
 #pragma once
 
 #include <utility>
@@ -8,7 +9,7 @@
 
 namespace pliant {
 
-/// Largest number of rows of a block.
+/// Largest number of rows of a node.
 inline constexpr int kMaxBlock = 6;
 
 /// A function that returns an order of elimination: the node at each place. A place is a position in the
@@ -20,24 +21,24 @@ std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::
 /// order without fill-in exists, as for the joint systems of chains and trees.
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 
-/// Minimum number of rows of the dense matrix. A smaller matrix is factored by blocks, which costs no more.
+/// Minimum number of rows of the dense matrix. Fewer rows are factored by blocks, which costs no more.
 inline constexpr int kFewDense = 18;
 
 /// An order of elimination for a graph whose nodes have several rows each, with its fill-in and its cost.
 struct Elimination {
   std::vector<int> sizes;               ///< rows of each node
   std::vector<int> node_at;             ///< the node at each place
-  std::vector<std::vector<int>> below;  ///< for each place, the later places whose blocks are not zero
+  std::vector<std::vector<int>> below;  ///< for each place, the later places with a block in its column of L
   int first_dense = 0;                  ///< the first place of the dense matrix
   long products = 0;                    ///< multiplications of a factorisation
   long dense_products = 0;              ///< multiplications in the dense matrix, included in products
   long values = 0;                      ///< numbers in the blocks of the factor
 };
-/// Returns the elimination of a graph in an order. sizes: rows of each node; edges: pairs of nodes whose
-/// block is not zero, in any order.
+/// Returns the elimination of a graph in the order that `order` returns. sizes: number of rows of each node.
+/// edges: pairs of nodes whose block is not zero, in any order; pairs may repeat.
 Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
                       NodeOrder order);
-/// Returns the cheaper one of two eliminations: by the cardinality search, and by a given order.
+/// Returns the elimination with fewer multiplications of two: in cardinality_order, and in a given order.
 Elimination cheapest_elimination(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
                                  NodeOrder order);
 
@@ -50,7 +51,7 @@ class BlockPattern {
   BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges, NodeOrder order)
       : BlockPattern(eliminate(sizes, edges, order)) {}
 
-  /// The storage of one block, by columns.
+  /// The storage of one block, by columns. (This is not a place in the order.)
   struct Place {
     int offset;    ///< of the first number
     bool swapped;  ///< whether the block has the rows of v and the columns of u
@@ -72,16 +73,18 @@ class BlockPattern {
   /// A node at its place in the order.
   struct Column {
     int size;
-    int row;           ///< the first row of the node in the vectors, which are in the order of the nodes
-    int diagonal;      ///< offset of the diagonal block
-    int first, last;   ///< range of the blocks below the diagonal
-    int first_update;  ///< first of the column's updates: one for each pair (a, b) of blocks, a >= b
+    int row;          ///< the first row of the node in the vectors, which are in the order of the nodes
+    int diagonal;     ///< offset of the diagonal block
+    int first, last;  ///< range of the blocks below the diagonal
+    /// The first of the column's updates. There is one for each pair (a, b) of its blocks below the diagonal,
+    /// a >= b.
+    int first_update;
   };
   /// Returns the columns in the order of elimination; the columns of the dense matrix are the last ones.
   const std::vector<Column>& columns() const { return columns_; }
   const std::vector<Block>& blocks() const { return blocks_; }
-  /// Returns the offsets of the blocks that the updates of each column change. The dense matrix has no
-  /// updates.
+  /// Returns, for each update of each column, the offset of the block that it changes. The columns of the
+  /// dense matrix have no updates.
   const std::vector<int>& updates() const { return updates_; }
   /// Returns the first column of the dense matrix: 0 if the whole matrix is dense, nodes() if there is no
   /// dense matrix, for example for a chain.

@@ -12,8 +12,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Rounding error of a row relative to the sum of its terms. A row that is violated by at most this is
-/// treated as satisfied.
+/// Rounding error of W lambda + b in a row, relative to the sum of the absolute values of its terms. A row
+/// that is violated by at most this error is treated as satisfied.
 inline constexpr double kComplementarityRounding = 1e-14;
 /// A row depends on the active rows if its Schur complement is at most this fraction of its diagonal entry.
 inline constexpr double kDependentOneSidedRow = 1e-12;
@@ -33,7 +33,8 @@ class ActiveSet {
         is_active_(VecMax<int, Max>::Zero(b.size())),
         excluded_(VecMax<int, Max>::Zero(b.size())) {}
 
-  /// Returns the most violated row, in the metric of W; -1 if no row is violated.
+  /// Returns the row with the largest violation^2 / W_ii, or -1 if no row is violated. Skips excluded rows
+  /// and rows with W_ii <= 0.
   int most_violated() const {
     int worst = -1;
     double largest = 0;
@@ -54,7 +55,8 @@ class ActiveSet {
     return worst;
   }
 
-  /// Makes row j active. Other rows can be released on the way. Returns the number of linear systems solved.
+  /// Makes row j active, or excludes it if it contradicts the active rows. Other rows can be released on the
+  /// way. Returns the number of linear systems solved.
   int activate(int j) {
     for (int solved = 1;; ++solved) {
       // W_PP y = W_Pj: the decrease of the impulses of the active rows P for a unit impulse of row j.

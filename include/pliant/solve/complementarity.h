@@ -1,5 +1,5 @@
 // One-sided constraints on velocities, with impulses lambda, or on accelerations, with forces lambda. Each
-// row has lambda >= 0, which is zero unless the row is active:
+// row has a lambda >= 0 and a slack, which is the entry of W lambda + b. One of the two is zero:
 //   0 <= lambda  _|_  W lambda + b >= 0,   W = C M^-1 C^T symmetric positive semi-definite
 // The limits of parameters and the strings use this problem.
 #pragma once
@@ -12,19 +12,21 @@ namespace pliant {
 template <int Max = Eigen::Dynamic>
 struct ComplementarityResult {
   VecMax<double, Max> lambda;
-  double residual = 0;  ///< largest violation of lambda >= 0, slack >= 0, lambda slack = 0, in units of b
-  int pivots = 0;       ///< number of linear systems solved
+  /// Largest violation of the conditions lambda >= 0, slack >= 0 and lambda slack = 0, in units of b.
+  double residual = 0;
+  int pivots = 0;  ///< number of linear systems solved
 };
 
 /// Maximum number of one-sided rows from the limits of one part: two for each parameter.
 inline constexpr int kMaxLimitRows = 2 * kMaxGlobal;
 
 /// Returns the solution of the convex problem min 1/2 lambda^T W lambda + b^T lambda over lambda >= 0, by an
-/// active-set method. W: n x n; b: n. The most violated row becomes active first; other rows can be released
-/// on the way. The objective decreases with every change, so the method terminates; in any case it ends after
-/// about 50 n + 50 linear systems. Rows that depend on the active ones (rank-deficient W) need no impulse of
-/// their own. Rows that contradict the active ones remain violated, and the residual reports them. Max:
-/// Eigen::Dynamic, or kMaxLimitRows for a solution without heap allocation.
+/// active-set method. W: n x n; b: n. The lambda of an active row keeps its slack at zero. The most violated
+/// row becomes active first; other rows can be released on the way. The objective decreases with every
+/// change, so the method terminates; in any case it ends after about 50 n + 50 linear systems. Rows that
+/// depend on the active ones (rank-deficient W) need no lambda of their own. Rows that contradict the active
+/// ones, and rows whose diagonal entry of W is zero, keep lambda = 0; the residual reports their violation.
+/// Max: Eigen::Dynamic, or kMaxLimitRows for a solution without heap allocation.
 template <int Max>
 ComplementarityResult<Max> solve_complementarity(const MatMax<double, Max>& W, const VecMax<double, Max>& b);
 

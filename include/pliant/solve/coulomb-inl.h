@@ -15,7 +15,8 @@ namespace pliant {
 
 namespace detail {
 inline constexpr int kMaxSlideIterations = 200;
-/// Maximum growth factor of s = |u_t| / |p_t| in one iteration of slide(), while s has no upper bound.
+/// In one iteration of slide(), s = |u_t| / |p_t| grows at most to this factor times the larger of s and the
+/// largest eigenvalue of A (coulomb.h). The limit holds while no upper bound of s is known.
 inline constexpr double kSlideRateGrowth = 16;
 /// Relative difference of two values of s below which the iteration ends.
 inline constexpr double kSameSlideRate = 2 * std::numeric_limits<double>::epsilon();
@@ -55,7 +56,7 @@ PLIANT_INLINE Vec3<double> CoulombLaw::impulse(const Vec3<double>& b) const {
 
 PLIANT_INLINE Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_frictionless) const {
   // Sliding: u_t = -s p_t with s > 0, and u_n = 0. Then (A + s) p_t = -c, where A is the Schur complement of
-  // the normal and c = b_t + coupling p_frictionless.
+  // the normal and c = b_t + W_tn p_frictionless.
   const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_frictionless);
   const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
   Eigen::Array2d t;  // p_t along the modes

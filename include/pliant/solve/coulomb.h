@@ -19,7 +19,8 @@ class CoulombLaw {
   Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction.
+  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction. It is the
+  /// result if s exceeds the range of a double.
   Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;
@@ -31,7 +32,8 @@ class CoulombLaw {
   Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< factor of W
 };
 
-/// Returns the impulse of one contact for W, b and the coefficient of friction mu.
+/// Returns the impulse of one contact for W (3 x 3), the velocity b without impulse and the coefficient of
+/// friction mu.
 inline Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
   return CoulombLaw(W, mu).impulse(b);
 }

@@ -17,28 +17,31 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerances of the sweeps; the larger one is used. kSweepExact is relative to the largest contact velocity
-/// without impulses. kSweepUlps is in units of the rounding error of the contact velocities J x.
+/// Tolerances of the sweeps. The largest of both and of `enough` (CoulombSystem::solve) is used. kSweepExact
+/// is relative to the largest contact velocity without impulses. kSweepUlps is in units of the rounding error
+/// of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
 /// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
 /// Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPointMasses = 1e-6;
-/// Rounds of the search: number of sweeps, and number of earlier pairs of sweeps for the extrapolation (0: no
-/// extrapolation).
+/// Rounds of the search: maximum number of sweeps, and number of pairs of sweeps for the extrapolation (0: no
+/// extrapolation). Clusters with more than kManyContacts contacts skip the rounds without extrapolation.
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPointMasses{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
 inline constexpr double kSweepWorse = 4;
 /// Relative regularisation of the extrapolation, in case that sweeps are linearly dependent.
 inline constexpr double kSweepRegularisation = 1e-14;
-/// First value: kAcceptableResidual for large clusters and for clusters with point masses. Second value: the
-/// compliance of contacts in the second search, as a fraction of the diagonal of W.
+/// First value: used in place of kAcceptableResidual for the decision about a second search, in large
+/// clusters and in clusters with point masses. Second value: the compliance of contacts in this second
+/// search, as a fraction of the diagonal of W.
 inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
 /// The result of the search with compliant contacts is preferred if its residual is less than this multiple
 /// of the residual of the first search, because compliant contacts have bounded impulses.
 inline constexpr double kCompliantPreference = 2;
-/// A search stalls if a round leaves more than this fraction of the residual of the round before. Nearly
-/// equal contacts can leave a residual that only unreasonably large impulses would remove.
+/// A search stalls if a round leaves more than this fraction of the residual of the round before. It ends
+/// then, if the residual is at most kAcceptableResidual: nearly equal contacts can leave a residual that only
+/// unreasonably large impulses would remove.
 inline constexpr double kSweepStalled = 0.1;
 /// A warm start is used if its residual is at most this fraction of the largest contact velocity without
 /// impulses.
@@ -202,9 +205,10 @@ PLIANT_INLINE void CoulombCluster::set_impulses(const VecX<double>& impulses) {
 }
 
 /// Runs pairs of sweeps (forward, backward) as a fixed-point iteration p = g(p) with Anderson acceleration
-/// (1965): the next p minimises |p - g(p)| over the last `history` pairs as if g were linear. g is linear
-/// once no contact changes between sticking, sliding and separation. Sets the best impulses found; returns
-/// whether they are exact.
+/// (1965): the next p minimises |p - g(p)| over combinations of the last `history` pairs, as if g were
+/// linear. g is linear once no contact changes between sticking, sliding and separation. Sets the best
+/// impulses found; adds the number of sweeps to `sweeps`. Returns whether the impulses are exact
+/// (exact_level()).
 PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int history, int& sweeps) {
   const Eigen::Index n = 3 * size_;
   auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
@@ -277,7 +281,8 @@ PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
   return false;
 }
 
-/// Runs the rounds of sweeps, each followed by Newton's method. Returns whether it found the solution.
+/// Runs the rounds of sweeps, each followed by Newton's method (not for many contacts with point masses),
+/// until the solution is found or the search stalls. Returns whether it found the solution.
 PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.

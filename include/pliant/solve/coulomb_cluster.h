@@ -14,8 +14,9 @@ namespace detail {
 
 /// A cluster with more contacts than this is large.
 inline constexpr int kManyContacts = 100;
-/// Relative residual of a cluster that is acceptable for a search that stalls, in units of the largest
-/// contact velocity without impulses. Above it, the search is repeated with compliant contacts.
+/// Residual that is acceptable, in units of the largest contact velocity without impulses. A search that
+/// stalls ends at or below it. A search that leaves more is repeated with compliant contacts; for this
+/// decision, large clusters and clusters with point masses use kAcceptableOfManyContacts.
 inline constexpr double kAcceptableResidual = 1e-6;
 
 }  // namespace detail
@@ -61,8 +62,8 @@ class CoulombCluster {
   /// number: index of the cluster. The velocities of the system must include the present impulses. enough:
   /// see CoulombSystem::solve.
   CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
-  /// Finds the impulses and stores them in the system. Updates the largest residual in result, and adds the
-  /// sweeps and a fallback.
+  /// Finds the impulses and stores them in the system. Updates the largest residual in result and adds the
+  /// number of sweeps; adds a fallback if the search was repeated with compliant contacts.
   void solve(CoulombResult& result);
 
  private:

@@ -23,8 +23,8 @@ namespace pliant {
 namespace detail {
 /// Maximum number of steps; the second value is for warm starts, which converge in fewer steps or not at all.
 inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
-/// Maximum size of the factor, in multiples of the diagonal blocks of the movers. Above it (many bodies
-/// packed closely on all sides), sweeps need less time and memory.
+/// Maximum size of the factor in a large cluster, in multiples of the diagonal blocks of the movers. Above it
+/// (many bodies packed closely on all sides), sweeps need less time and memory.
 inline constexpr double kMaxContactFill = 10;
 /// Newton's method reduces the residual to this fraction of exact_level(), for which one more step is usually
 /// enough. The second value is for warm starts, so that residuals do not accumulate from time step to time
@@ -37,8 +37,11 @@ inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.0
 inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8,
                         kProximalNear = 1e-5;
 inline constexpr double kProximalFactorOfPointMasses = 0.7, kMinProximalOfPointMasses = 1e-5;
-/// After this number of steps without progress, a residual above kFutileFarOff times the best one resets the
-/// impulses to the best ones, and the proximal weight grows by kProximalGrowth.
+/// After kMaxFutileNewton steps without progress, a residual above kFutileFarOff times the best one resets
+/// the impulses to the best ones. A step that is not finite does so at once. The proximal weight then grows
+/// by kProximalGrowth, up to kFirstProximal, and does not fall below this value again. If the best residual
+/// is at most kAcceptableResidual and the weight is at its minimum, these steps without progress end the
+/// method.
 inline constexpr int kMaxFutileNewton = 4;
 inline constexpr double kFutileFarOff = 1e3, kProximalGrowth = 10;
 /// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
@@ -205,8 +208,8 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
   return &movers;
 }
 
-/// Runs Newton's method. Sets the best impulses found; returns whether they are exact. near: for a warm
-/// start.
+/// Runs Newton's method. Sets the best impulses found; returns whether they are exact (exact_level()).
+/// Returns false at once if the linear system is too large. near: whether it begins at a warm start.
 PLIANT_INLINE bool CoulombCluster::newton(bool near) {
   const double beyond = near ? detail::kContactNewtonExactNear : detail::kContactNewtonExact;
   double exact = exact_level();

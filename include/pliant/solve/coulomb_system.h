@@ -20,9 +20,10 @@ namespace pliant {
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
-  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the largest contact
-  /// velocity without impulses (above 1e-2 for clusters with more than 100 contacts or with point masses,
-  /// which converge more slowly).
+  /// Number of clusters for which the search failed and was repeated with compliant contacts. It failed if it
+  /// left a residual above `enough` and above 1e-6 of the largest contact velocity without impulses. The
+  /// fraction is 1e-2 for clusters with more than 100 contacts or with point masses, which converge more
+  /// slowly.
   int fallbacks = 0;
 };
 
@@ -51,7 +52,7 @@ class CoulombSystem {
   /// zero. The caller fills it before the next add function. The impulse of a contact without pushes is zero.
   Push add_push(int mover);
 
-  /// Removes the pushes of the last contact.
+  /// Removes the pushes of the last contact. No push can be added to this contact afterwards.
   void drop_pushes();
 
   int movers() const { return static_cast<int>(movers_.size()) - 1; }  ///< number of movers
@@ -83,7 +84,8 @@ class CoulombSystem {
   void add_change(int k, double factor, VecX<double>& x) const;
 
   /// Returns whether solve() can use the impulse of contact k as a warm start. Valid after solve(). The
-  /// result is false if the contact is the only one of its cluster or if the cluster contains point masses.
+  /// result is false if the contact is the only one of its cluster, if the cluster contains point masses, or
+  /// if the contact has no side.
   bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
   /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
   /// output. enough: a velocity; smaller violations of the law are accepted. No contact or mover can be added

@@ -18,7 +18,7 @@ class DenseFactor {
   /// Returns the matrix to factor; after factor() its factor. Only the lower triangle is used.
   MatX<S>& matrix() { return L_; }
 
-  /// Factors the matrix in place. row: the index of each of its rows in `pivots`.
+  /// Factors the matrix in place. row: for each row of the matrix, its index in `pivots`.
   void factor(const std::vector<int>& row, Pivots<S>& pivots) {
     const auto n = static_cast<int>(L_.rows());
     scaled_.resize(n, kPanel);
@@ -39,7 +39,7 @@ class DenseFactor {
     }
   }
 
-  /// Computes x = A^-1 x, with zeros for excluded rows.
+  /// Computes x = A^-1 x for the factored matrix A, with zeros for excluded rows. row: as for factor().
   void solve(const std::vector<int>& row, const Pivots<S>& pivots, VecX<S>& x) const {
     const auto n = static_cast<int>(L_.rows());
     for (int j = 0; j < n; ++j) x.tail(n - j - 1) -= L_.col(j).tail(n - j - 1) * x[j];

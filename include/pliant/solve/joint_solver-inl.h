@@ -8,8 +8,8 @@
 namespace pliant {
 
 namespace detail {
-/// Cost of the blocks in ns: for a multiplication in a block and in the dense matrix, and for a number of the
-/// factor.
+/// Cost of the blocks in ns: for a multiplication in a block, for one in the dense matrix, and for a number
+/// of the factor.
 inline constexpr double kBlockProduct = 0.6, kDenseProduct = 0.25, kBlockValue = 1;
 /// Cost of a general sparse factor in ns: for a multiplication, for a number of the factor, and a constant.
 inline constexpr double kSparseProduct = 1.2, kSparseValue = 12, kSparseStart = 4000;

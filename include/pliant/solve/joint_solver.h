@@ -14,11 +14,11 @@ namespace pliant {
 struct JointSolver {
   enum class Choice { automatic, blocks, augmented };
   Choice choice = Choice::automatic;
-  /// Factorisation of the augmented matrix. Implicit methods of integration use it for the stiffness matrix
-  /// of nodes too.
+  /// Makes the factorisation of the augmented matrix. The linearly implicit methods of integration use it
+  /// also for the stiffness matrices of parts with nodal local deformation.
   MakeSparseFactor make_factor = make_eigen_factor;
-  /// A fill-reducing order for the blocks. The solver compares it with the cardinality search and uses the
-  /// cheaper one.
+  /// A fill-reducing order for the blocks. The solver compares it with cardinality_order and uses the cheaper
+  /// one.
   NodeOrder order = minimum_degree_order;
 };
 

@@ -16,7 +16,7 @@ class MoverSystem {
 
   /// Adds a mover with `size` velocities and returns its number.
   int add_mover(int size);
-  /// Adds a block of A for the movers i and j.
+  /// Adds the blocks A_ij and A_ji for the movers i and j. The diagonal blocks always exist.
   void couple(int i, int j);
   /// Computes the order of elimination and the storage. Returns false, and the system cannot be solved, if
   /// the storage would exceed `max_fill` times that of the diagonal blocks of the movers.
@@ -34,7 +34,7 @@ class MoverSystem {
     std::size_t first;
     int stride;  ///< from column to column
   };
-  /// Returns the storage of the block of two coupled movers.
+  /// Returns the storage of the block A_ij. The movers i and j must be equal or coupled.
   Block block(int i, int j) const;
 
   /// Sets A = 0 and b = 0.
@@ -44,14 +44,14 @@ class MoverSystem {
   void add(int row, const Eigen::MatrixBase<Vector>& b) {
     b_.segment<Vector::RowsAtCompileTime>(row, b.rows()) += b;
   }
-  /// Adds to a block of A, or to some of its columns.
+  /// Adds to a block of A, or to some of its columns if block.first is the first number of such a column.
   template <class Matrix>
   void add(const Block& block, const Eigen::MatrixBase<Matrix>& A) {
     using Numbers = Eigen::Matrix<double, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>;
     Eigen::Map<Numbers, 0, Eigen::OuterStride<>>(numbers_.data() + block.first, A.rows(), A.cols(),
                                                  Eigen::OuterStride<>(block.stride)) += A;
   }
-  /// Solves the system. The solution is not finite if the system is singular.
+  /// Solves the system; overwrites b by x. The solution is not finite if the system is singular.
   void solve();
   /// Returns `size` values of x, starting at a row.
   auto change(int row, int size) const { return b_.segment(row, size); }
@@ -60,11 +60,11 @@ class MoverSystem {
   struct Mover {
     int size = 3, row = 0, position = 0;  ///< position: in the order of elimination
     bool uniform = true;                  ///< whether all its remaining neighbours have its size
-    std::vector<int> neighbours;  ///< neighbours that remain when it is eliminated, in ascending order
-    /// Start of the diagonal block of this mover k; then follow, for each neighbour j, the blocks A_kj and
-    /// A_jk.
+    std::vector<int> neighbours;  ///< movers coupled to it that are eliminated later, in ascending order
+    /// Start in numbers_ of the diagonal block of this mover k. Then follow, for each neighbour j, the blocks
+    /// A_kj and A_jk.
     std::size_t numbers = 0;
-    std::size_t targets = 0;  ///< start of the list of blocks that its elimination changes
+    std::size_t targets = 0;  ///< start in targets_ of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
   /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
@@ -73,8 +73,8 @@ class MoverSystem {
 
   std::vector<Mover> movers_;
   std::vector<int> sequence_;         // movers in the order of elimination
-  std::vector<std::size_t> targets_;  // blocks of pairs of neighbours, column by column
-  VecX<double> numbers_;              // the entries of A, in the order of elimination
+  std::vector<std::size_t> targets_;  // for each mover: the blocks of pairs of its neighbours, by columns
+  VecX<double> numbers_;              // the entries of 1 + A, in the order of elimination
   VecX<double> b_;
 };
 

@@ -18,8 +18,9 @@ namespace pliant {
 enum class RankRule {
   /// A row is dependent if its relative pivot is at most Pivots::kVanished.
   decide,
-  /// The dependent rows are those of the previous factorisation, and rows whose relative pivot is at most
-  /// Pivots::kRounding. Within a step, joints are slightly open, which makes dependent rows look independent.
+  /// The dependent rows are those of the previous factorisation, and other rows whose relative pivot is at
+  /// most Pivots::kRounding. Within a step, joints are slightly open, so that dependent rows can look
+  /// independent.
   keep,
   /// A row is dependent if its relative pivot is at most Pivots::kRounding. This rule is for configurations
   /// near a singular one.
@@ -30,12 +31,12 @@ enum class RankRule {
 template <class S>
 class Pivots {
  public:
-  /// Size relative to its scale (set_entry, raise_scale) at or below which a pivot vanishes: by
-  /// RankRule::decide, and by the other rules.
+  /// A pivot vanishes if its ratio to its scale (set_entry, raise_scale) is at most this: kVanished for
+  /// RankRule::decide, kRounding for the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
 
-  /// Starts a new matrix with this number of rows. RankRule::keep keeps the excluded rows; the number of rows
-  /// must not change.
+  /// Starts a new matrix with this number of rows. RankRule::keep keeps the excluded rows of the previous
+  /// matrix, which must have had this number of rows.
   void clear(int rows, RankRule rule) {
     keep_ = rule == RankRule::keep;
     vanished_ = rule == RankRule::decide ? kVanished : kRounding;
@@ -45,8 +46,8 @@ class Pivots {
     if (!keep_) excluded_.assign(at(rows), 0);
     measures_.clear();
   }
-  /// Sets a larger scale for the pivot of a row, for a row whose diagonal entry is a difference of larger
-  /// numbers.
+  /// Sets a lower bound of the scale for the pivot of a row, for a row whose diagonal entry is a difference
+  /// of larger numbers. Call it after clear().
   void raise_scale(int row, double entry) { measures_.push_back({row, entry}); }
 
   /// Sets the scale of the pivot of a row: its diagonal entry before the elimination.
@@ -77,8 +78,8 @@ class Pivots {
   bool excluded(int row) const { return excluded_[at(row)] != 0; }
   /// Returns the number of rows that are not excluded.
   int rank() const { return static_cast<int>(std::count(excluded_.begin(), excluded_.end(), 0)); }
-  /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost in the
-  /// elimination.
+  /// Returns the smallest ratio of an accepted pivot to its scale, at most 1: a measure of the digits lost in
+  /// the elimination.
   double smallest() const { return smallest_; }
 
  private:

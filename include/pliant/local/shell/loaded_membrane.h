@@ -2,7 +2,7 @@
 // variation,
 //   E = 1/2 int w1 |grad d|^2 + w0 |d|^2,
 // on linear triangles with area A,
-//   K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12,
+//   K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12   (lumped: w0 A delta_ij/3),
 // for each of the directions x, y and z. Two domains of integration are available:
 //   ParameterMesh   the parameters, du dv, as published; the material is stiffer near poles
 //   ShellMesh       the surface itself, with the cotangent formula for the gradient; poles have no influence

@@ -1,8 +1,9 @@
 // Laws of membranes for large deformation: the energy W(q) of a triangle, J, with q from its edges
-// (edge_strain.h). With Green's strain G = sum_k q_k B_k, C = 1 + 2 G, rest area A and thickness t,
+// (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and rest
+// thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
 //   neo-Hookean            W = A t mu/2 [tr C - 2 + (D^-k - 1)/k],  D = det C,  k = nu/(1 - nu).
-// The second law is the compressible material of Blatz & Ko (1962) in plane stress, whose thickness is
+// The second law is the compressible material of Blatz & Ko (1962) in plane stress, whose thickness becomes
 // D^(-k/2) t. k = 1 is incompressible rubber; for k -> 0 the last term becomes -log D.
 #pragma once
 
@@ -52,7 +53,7 @@ struct NeoHookeanSheet {
   static constexpr const char* name = "neo_hookean";
 
   struct Triangles {
-    std::array<Pack, 3> trace;  ///< tr B_k
+    std::array<Pack, 3> trace;  ///< tr B_i of each edge i
     Pack inverse;               ///< 1/(2 A)^2, 1/m^4
     Pack stiffness;             ///< A t mu / 2, J
     double k = 0;

@@ -1,8 +1,8 @@
 // Pressure in a closed shell: an energy E(V) of the enclosed volume V, m^3,
-//   V = 1/6 sum over triangles of x_a . (x_b x x_c),
+//   V = 1/6 sum over triangles of x_a . cross(x_b, x_c),
 //   dE/dx = E' dV/dx,   K = E' d2V/dx2 + E'' (dV/dx)(dV/dx)^T.
 //   constant pressure p   E = -p V
-//   gas                   E = p0 V0/(gamma - 1) (V0/V)^(gamma - 1) + p_ext V   (adiabatic)
+//   gas                   E = p0 V0/(gamma - 1) (V0/V)^(gamma - 1) + p_ext V   (adiabatic, gamma > 1)
 //                         E = p0 V0 log(V0/V) + p_ext V                        (isothermal, gamma = 1)
 // The gas has pressure p0 at volume V0; p_ext is the pressure outside.
 #pragma once
@@ -78,7 +78,7 @@ struct Gas {
 class GasPressure final : public Pressure {
  public:
   /// Throws the errors of Pressure, and std::invalid_argument unless p0 >= 0, V0 > 0, gamma >= 1 and p_ext is
-  /// finite. Energy and forces are NaN where V <= 0.
+  /// finite. Energy, forces and stiffness are NaN where V <= 0.
   GasPressure(const ShellMesh& mesh, const Gas& gas);
 
  private:

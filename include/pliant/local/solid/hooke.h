@@ -5,8 +5,8 @@
 // P_v is the damping by the law's own stiffness. Rigid motion has Gdot = 0. The dissipated power
 // P_v : Fdot = S(Gdot) : Gdot is never negative.
 //
-// The functions below have a parameter Dim. Dim = 2: F is the gradient on a surface and has two non-zero
-// columns; I has two ones on its diagonal.
+// Functions that contain I have a parameter Dim. Dim = 3: solids. Dim = 2: F is the gradient on a surface and
+// has two non-zero columns; I has two ones on its diagonal.
 #pragma once
 
 #include <pliant/local/tensor.h>

@@ -1,6 +1,6 @@
 // Neo-Hookean material without logarithms (Smith, De Goes & Kim 2018, without their logarithmic term, which
-// prevents the equilibrium of elements that have collapsed to a point). From F = dx/dX, with J = det F and C
-// = cofactors of F = dJ/dF,
+// prevents the equilibrium of elements that have collapsed to a point). From F = dx/dX, with J = det F and
+// the cofactors C = dJ/dF of F,
 //   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
 //   P = mu F + ((lambda + mu)(J - 1) - mu) C.
 // For small strains the constants are those of Hooke's law. W is a polynomial, so that it is defined for

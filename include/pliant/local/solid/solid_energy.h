@@ -1,10 +1,10 @@
 // Elastic energy of a solid made of tetrahedra: E = sum over elements and quadrature points of weight * W(G).
-// For nodal vectors x the gradient is
+// The weight is that of the quadrature rule times det dX/dxi. For nodal vectors x the gradient is
 //   G = sum_a x_a (dN_a/dX)^T = (dx/dxi) (dX/dxi)^-1,
 // where x = d for the linear law and x = p = s + d for the other laws. The force on node a is
 //   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG.
-// K dx is -f with P replaced by dP, the change of P along the gradient of dx. One kernel serves every element
-// (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each quadrature point.
+// K dx at node a is -f_a with P replaced by dP, the change of P along the gradient of dx. One kernel serves
+// every element (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each quadrature point.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class SolidEnergy final : public NodalEnergy {
   static constexpr int N = Element::n_nodes;
 
   /// rest: positions X of the nodes at rest, m. elements: N node numbers in each column. Throws
-  /// std::invalid_argument for another number of rows, for unknown nodes, and if det dX/dxi <= 0 at a
-  /// quadrature point.
+  /// std::invalid_argument for another number of rows, for node numbers that `rest` does not have, and if
+  /// det dX/dxi <= 0 at a quadrature point.
   SolidEnergy(const Nodes& rest, const Eigen::MatrixXi& elements, const Law& law);
 
   Of of() const override { return Law::of; }

@@ -8,7 +8,8 @@
 //              2018).
 // Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
 // exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that a uniform stress is in balance on
-// curved elements too. The mass rule is exact for degree 5 (Walkington 2000).
+// curved elements too. With 15 nodes a small imbalance remains if the bubbles have non-zero coefficients in
+// the rest positions inside the solid. The mass rule is exact for degree 5 (Walkington 2000).
 #pragma once
 
 #include <array>
@@ -227,8 +228,8 @@ struct EnrichedTetrahedron {
   }
 };
 
-/// Nodes of the enriched element. The weight is the share of the reference volume (1/6) that is lumped to the
-/// node.
+/// Nodes of the enriched element. The weight of a node is the volume of the reference tetrahedron (1/6 in
+/// total) that is lumped to this node.
 inline constexpr std::array<TetrahedronPoint, 15> kEnrichedNodes = [] {
   std::array<TetrahedronPoint, 15> nodes{};
   for (std::size_t c = 0; c < 4; ++c) {

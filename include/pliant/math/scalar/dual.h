@@ -151,7 +151,7 @@ struct Dual {
   }
 };
 
-/// Returns whether x equals the number c and all its derivatives are zero.
+/// Returns whether x equals the number c and all derivatives of x, if it has any, are zero.
 inline bool is_constant(double x, double c) {
   return x == c;
 }

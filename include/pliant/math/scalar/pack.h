@@ -35,7 +35,7 @@ struct Pack {
 #else
   static constexpr int kWidth = 2;
 #endif
-  // The alignment is that of Eigen's arrays (EIGEN_MAX_STATIC_ALIGN_BYTES).
+  // The alignment is that of Eigen's arrays: the build sets EIGEN_MAX_STATIC_ALIGN_BYTES to 16.
   using Vector [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = double;
   using Bits [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = std::uint64_t;
   static constexpr int kVectors = kLanes / kWidth;
@@ -117,7 +117,7 @@ struct Pack {
   friend Pack cos(const Pack& a) {
     return sin_cos_of(a).cos;
   }
-  /// Returns 2^n for integers n.
+  /// Returns 2^n for integers -1023 < n < 1024.
   friend Pack power_of_two(const Pack& n) {
     Pack power;
     for (int k = 0; k < kVectors; ++k) {

@@ -1,6 +1,6 @@
 // Truncated second-order Taylor numbers in one variable t: value v, first derivative d, second derivative dd.
-// A formula s evaluated at q + t qdot returns, at t = 0, the exact s, J qdot and Jdot qdot (the velocity
-// terms of Eq. (11)).
+// A formula s evaluated at q + t qdot returns, at t = 0, the exact s, J qdot and Jdot qdot. The inertial
+// forces g_q of Eq. (11) contain Jdot qdot.
 #pragma once
 
 #include <type_traits>
