@@ -82,7 +82,8 @@ class Mutator {
     return text;
   }
 
-  /// Returns a document in which one to three values are replaced, or keys are removed or misspelt.
+  /// Returns a document with one to three random changes: a value is replaced, or a key is removed or copied
+  /// to a misspelt key.
   std::string mutate_values(Json document) {
     for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
       std::vector<std::string> places;

@@ -101,8 +101,8 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
-/// Return the errors of a scene with one part, spring or solver that has the given members besides the
-/// required ones.
+/// Return the errors of a scene with one part, spring or solver that has the given members. The part also has
+/// a name, a shape and a mass, and the spring also has a part.
 std::string part_faults(const std::string& members) {
   return faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": 1,\n" + members +
                 "}]}");
