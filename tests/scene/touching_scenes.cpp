@@ -1,6 +1,6 @@
 // The scenes with contact, run to their end with their own step. No step has an overlap above a thousandth of
-// the smaller part, closed joints stay closed in every impact, and the figures of the paper show the
-// described motion.
+// the size of the smaller part, closed joints stay closed in every impact, and the figures of the paper show
+// the described motion.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
