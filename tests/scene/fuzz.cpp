@@ -215,7 +215,7 @@ TEST_CASE("mutated scenes are refused with a message or can run") {
   int cases = 0, ready = 0;
   for (const CaseCounts& counts : {CaseCounts{PLIANT_SCENES, 20, 40}, CaseCounts{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(counts.folder)) {
-      // Some scenes need a second to prepare: dynamic exponents, a hundred parts, elasticity.
+      // Some scenes need a second to prepare: dynamic exponents, almost a hundred parts, elasticity.
       if (sample.name == "mould.json" || sample.name == "net.json" || sample.name == "rubber_bars.json")
         continue;
       Mutator mutator(sample.name);

@@ -1,5 +1,5 @@
-// JSON documents: positions of values, messages about syntax errors, refused documents, the option --set. The
-// tags I.. of test names group the kinds of bad input.
+// JSON documents: positions of values, messages about syntax errors, refused documents, the option --set.
+// Numbers I01, I02, ... in test names are those of the stress catalogue in tests/README.md.
 #include <pliant/scene/json/json_document.h>
 
 #include <sys/stat.h>

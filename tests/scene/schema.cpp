@@ -1,5 +1,6 @@
 // Records of a scene: their checks and messages, the values for readers, and the JSON Schema generated from
-// them, checked by an independent validator. The tags I.. of test names group the kinds of bad input.
+// them, checked by an independent validator. Numbers I01, I02, ... in test names are those of the stress
+// catalogue in tests/README.md.
 #include <pliant/scene/schema/schema.h>
 
 #include <fstream>

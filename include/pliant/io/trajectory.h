@@ -8,11 +8,11 @@
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s, world; rad/s, body frame
 //     NAME.PARAMETER_dot                     rates of the dynamic parameters
-//     NAME.com.x y z                         centre of mass (m, world), if it may not be the frame's origin
+//     NAME.com.x y z                         centre of mass (m, world), if it may differ from NAME.c
 //   track.NAME.x y z                         tracked points, m, world
 //   if the parts have columns, for every joint NAME:
 //     joint.NAME.force.x y z                 force on the first side of the joint, N, world
-//     joint.NAME.torque.x y z                torque on it about the joint, N m, if rotation is constrained
+//     joint.NAME.torque.x y z                torque on this side about the joint, N m, if it has one
 //     joint.NAME.gap                         gap, m
 //   energy.kinetic gravity elastic springs total, work.KIND   J; energy.local with local deformation
 //   balance                                  J: energy.total - its value at time 0 - all works

@@ -90,7 +90,7 @@ class Run {
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
-  /// Shows a note and adds it to run.json, unless it is there already.
+  /// Shows a note. Adds the note to run.json, unless it is there already.
   void note(const std::string& text);
   void note_redundancy();
   void note_engagements();
