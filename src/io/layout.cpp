@@ -57,8 +57,8 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
       {"rate", schedule.rate()},
       {"count", schedule.frames()},
       {"time",
-       "frame k is at time k / rate seconds: a recorded state, or interpolated between the states before and "
-       "after the step that contains it"}};
+       "frame k is at time k / rate seconds: a recorded state, or computed from the recorded states at the "
+       "start and at the end of the step that contains it"}};
   Json& tables = layout["tables"];
   tables[kTimesFile] = json_of(std::vector<Column>{{"t", "s", "time: start + step * step_size"}});
   tables[kCoordinatesFile] = part_columns(model, false);

@@ -213,9 +213,10 @@ namespace {
 /// An impact is assumed at the end of a step if the rates jump there by more than this fraction of their
 /// change due to the accelerations.
 constexpr double kJump = 0.5;
-/// Other forces, such as contact, are assumed within a step if the accelerations at both ends predict neither
-/// the displacements nor the rates well: both errors are more than this fraction of the change of the rates
-/// due to the accelerations.
+/// Other forces, such as contact, are assumed within a step if two predictions fail: that of the displacement
+/// from the rate and the acceleration at the start, and that of the rate at the end from the mean of both
+/// accelerations. A prediction fails if its error (times 2 / h for the displacement) is more than this
+/// fraction of the change of the rates due to the accelerations.
 constexpr double kPushed = 0.2;
 /// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;

@@ -52,7 +52,7 @@ std::vector<Column> TrajectoryTable::columns() const {
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
     const PartModel& part = model.parts()[i];
     if (part.q0 < 0) continue;
-    // Nodes have columns in q.npy and v.npy only.
+    // The coordinates of local deformation have columns in q.npy and v.npy only.
     add_some(columns, coordinate_columns(model, part), 7 + part.n_s);
     add_some(columns, velocity_columns(model, part), 6 + part.n_s);
     if (centre_shown_[i]) add_axes(columns, part.part->name() + ".com", "m", "centre of mass, world");

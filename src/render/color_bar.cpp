@@ -1,5 +1,5 @@
 // Layout of the colour bar. The unit of lengths is the height of a digit, which is proportional to the height
-// of the image.
+// of the image, but at least 6 pixels.
 #include "color_bar.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The pairs of position and normal (mesh_batch.h) are found once, and again only if the triangles change.
-// Each frame only collects the values of the pairs.
+// Each frame only collects the positions and normals of the pairs.
 #include "mesh_batch.h"
 
 #include <algorithm>

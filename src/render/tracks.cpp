@@ -1,5 +1,6 @@
 // Thins out tracks, because a long run records more points than a picture has pixels. A point is kept if it
-// is at least one sample away from the previous kept point.
+// is at least one sample away from the previous kept point. The ends of a track are always kept, and so are
+// points behind the near plane and the first point after them.
 #include "tracks.h"
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// The tracks of a picture in one vertex buffer. Points that are less than one sample from the previous one
-// are left out.
+// The tracks of a picture in one vertex buffer. Points that are less than one sample from the previous kept
+// one are left out, except the last point of a track.
 #pragma once
 
 #include <vector>

@@ -29,7 +29,7 @@ namespace pliant {
 
 namespace {
 
-/// Returns the colour of the i-th part without a colour of its own: one of eight distinguishable tones.
+/// Returns the colour of part i if the scene gives it none: one of eight distinguishable tones.
 Color palette(std::size_t i) {
   static constexpr std::array<Color, 8> tones{{{0.85, 0.47, 0.20},
                                                {0.24, 0.49, 0.70},
@@ -168,7 +168,7 @@ class SceneReader {
 
   /// Warns if the surface mesh of a part is too coarse to show its twist.
   void check_mesh(const Reader& r, const Part& part, int resolution) {
-    double turns = 0;  // of the twist between the two ends; twist.angle is the angle between middle and end
+    double turns = 0;  // of one end relative to the other; twist.angle is the angle between middle and end
     for (int i = 0; i < part.parameters().size(); ++i) {
       const Parameter& p = part.parameters()[i];
       if (p.name.rfind("twist", 0) == 0)  // "twist.angle", "twist2.angle"

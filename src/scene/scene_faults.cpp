@@ -10,8 +10,8 @@
 namespace pliant {
 
 void SceneFaults::add(const JsonValue& at, std::string message, Severity severity) {
-  // Beyond the stored faults a fault is only counted. It then needs no place, which only a search of the
-  // document finds.
+  // When the storage is full, a fault is only counted. Then the search of the document for its place is not
+  // necessary.
   diagnostics_.add(diagnostics_.full() ? Diagnostic{"", 0, 0, "", "", severity}
                                        : document_.fault(at, std::move(message), severity));
 }

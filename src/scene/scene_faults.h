@@ -45,7 +45,8 @@ class SceneFaults {
 /// Returns a computed number with 4 significant digits.
 std::string brief(double x);
 
-/// Returns "; did you mean "NAME"?" for the nearest name, or "; expected one of "A", "B"" if no name is near.
+/// Returns "; did you mean "NAME"?" for the nearest name, or "; expected one of "A", "B"" with the first 32
+/// names if no name is near.
 std::string name_hint(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace pliant

@@ -263,7 +263,8 @@ class Validator {
     for (const schema::KeyGroup& group : record.exclusive) check_group(value, group);
   }
 
-  /// Returns "; did you mean ...?" for the first key of an object that is similar to a key of an alternative.
+  /// Returns "; did you mean ...?" for the first key of an object that is similar to a key of an alternative;
+  /// an empty text if there is none.
   static std::string nearest_key(const JsonValue& object, const Type& alternatives) {
     std::vector<std::string> keys;
     for (const Type& t : alternatives.inner) {
@@ -283,7 +284,7 @@ class Validator {
       return t.kind == TypeKind::kRecord && t.records[0]->find(key) != nullptr;
     });
   }
-  /// Returns the list of the required keys of a record that an object has.
+  /// Returns those required keys of a record that an object has, as a list in quotes.
   static std::string given_of(const Record& record, const JsonValue& object) {
     std::string list;
     for (const Field& field : record.fields)

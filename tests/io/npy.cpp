@@ -146,7 +146,7 @@ TEST_CASE("I50: a new table does not overwrite an existing file or the target of
   CHECK(bytes_of(folder / "precious") == "data");
 }
 
-TEST_CASE("I51: a full disk is reported when the file is created") {
+TEST_CASE("I51: a file that cannot be created is reported") {
   if (!fs::exists("/dev/full")) return;
   const NewFolder folder;
   fs::create_symlink("/dev/full", folder / "full");

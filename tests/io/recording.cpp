@@ -135,7 +135,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
   }
   set_bytes(folder / kContactCacheFile, whole);
-  // A flipped bit in the numbers that give the rows of a state in the contact cache damages no other state.
+  // A flipped bit in the columns of modes.npy that give the rows of a state in the contact cache, or the age
+  // of the cache, damages no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
   for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;

@@ -383,7 +383,8 @@ TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps
   CHECK(joint_estimate.gap < 1e-14);
   CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == joint_estimate.joint_force);
 
-  // A box that slides to a stop. With error control the contact settings limit the length of its steps.
+  // A box that slides to a stop, with error control. The estimate halves the longest contact step of the
+  // settings for the repetition, and then restores it.
   auto box = scene_of("box");
   box->tolerance = 1e-6;
   box->integrator = "dop853";

@@ -9,9 +9,9 @@
 #include <pliant/scene/scene.h>
 
 /// Returns a scene with four parts. The first part tapers up to its limits, twists and stretches; a moving
-/// spring and a rest value that depends on time drive it. The second, rigid part is on two springs. The
-/// third part is fixed. The fourth, rigid part hangs from the second one by a ball joint, and from the world
-/// by a string.
+/// spring, a force and a rest value that depends on time drive it. The second, rigid part is on two springs.
+/// The third part is fixed. The fourth, rigid part hangs from the second one by a ball joint, and from the
+/// world by a string.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();

@@ -1,5 +1,5 @@
-// trajectory.csv has a header and numbers in full precision. For more than a hundred parts it has only totals
-// (energies, works and momenta).
+// trajectory.csv has a header and numbers in full precision. For more than a hundred parts it has only the
+// time, tracks and totals (energies, works, balance and momenta).
 #include <pliant/io/trajectory.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Draws two pictures with the backend named by the argument (osmesa or egl) and prints a hash of their bytes.
-// Tests run it in a process with other environment variables.
+// Draws two pictures with the backend named by the argument (osmesa or egl; without an argument osmesa) and
+// prints a hash of their bytes. Tests run it in a process with other environment variables.
 #include <cstdint>
 #include <cstdio>
 #include <exception>

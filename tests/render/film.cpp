@@ -69,7 +69,7 @@ TEST_CASE("camera and ground do not move, and show the whole motion") {
   }
 }
 
-TEST_CASE("the camera does not depend on the time at which a film starts") {
+TEST_CASE("the camera does not depend on the pictures that were made before") {
   const FilmedRun filmed;
   Film first = filmed.film(), second = filmed.film();
   first.at(0.2);

@@ -40,7 +40,8 @@ inline TriangleMesh sphere(const Eigen::Vector3d& centre, double radius, int row
   return mesh;
 }
 
-/// Returns a cube with 8 vertices and 6 normals, one for each face, rotated by `turn` radians around z.
+/// Returns a cube with edges of length 2 * half, 8 vertices and 6 normals, one for each face, rotated by
+/// `turn` radians around z.
 inline TriangleMesh cube(const Eigen::Vector3d& centre, double half, double turn) {
   TriangleMesh mesh;
   mesh.x.resize(3, 8);

@@ -82,7 +82,8 @@ class Mutator {
     return text;
   }
 
-  /// Returns a document in which one to three values are replaced, or keys are removed or misspelt.
+  /// Returns a document with one to three random changes: a value is replaced, or a key is removed or copied
+  /// to a misspelt key.
   std::string mutate_values(Json document) {
     for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
       std::vector<std::string> places;
@@ -214,7 +215,7 @@ TEST_CASE("mutated scenes are refused with a message or can run") {
   int cases = 0, ready = 0;
   for (const CaseCounts& counts : {CaseCounts{PLIANT_SCENES, 20, 40}, CaseCounts{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(counts.folder)) {
-      // Some scenes need a second to prepare: dynamic exponents, a hundred parts, elasticity.
+      // Some scenes need a second to prepare: dynamic exponents, almost a hundred parts, elasticity.
       if (sample.name == "mould.json" || sample.name == "net.json" || sample.name == "rubber_bars.json")
         continue;
       Mutator mutator(sample.name);

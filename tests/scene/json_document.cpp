@@ -1,5 +1,5 @@
-// JSON documents: positions of values, messages about syntax errors, refused documents, the option --set. The
-// tags I.. of test names group the kinds of bad input.
+// JSON documents: positions of values, messages about syntax errors, refused documents, the option --set.
+// Numbers I01, I02, ... in test names are those of the stress catalogue in tests/README.md.
 #include <pliant/scene/json/json_document.h>
 
 #include <sys/stat.h>
@@ -272,7 +272,7 @@ TEST_CASE("I18 deep nesting is refused with its position") {
   CHECK(faults(objects) == "s.json:1:321: error: nested deeper than 64 levels\n");
 }
 
-TEST_CASE("I19 size limits are checked before reading") {
+TEST_CASE("I19 files that are too large and texts with too many values are refused") {
   const Folder folder;
   const std::string path = folder.write("large.json", "{}");
   fs::resize_file(path, (std::uintmax_t{64} << 20) + 1);

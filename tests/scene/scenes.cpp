@@ -448,8 +448,8 @@ TEST_CASE("the sleep settings are read") {
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {
-  // Types, keys and ranges cannot describe these errors: they concern names and numbers that depend on
-  // others.
+  // Types, keys and ranges cannot describe these errors: they concern formulas, the JSON text itself, or
+  // names and numbers that depend on others.
   const std::vector<std::string> passed{"anchor_not_finite",
                                         "camera_at_its_target",
                                         "coloring_of_unknown_part",

@@ -1,5 +1,6 @@
 // Records of a scene: their checks and messages, the values for readers, and the JSON Schema generated from
-// them, checked by an independent validator. The tags I.. of test names group the kinds of bad input.
+// them, checked by an independent validator. Numbers I01, I02, ... in test names are those of the stress
+// catalogue in tests/README.md.
 #include <pliant/scene/schema/schema.h>
 
 #include <fstream>
@@ -101,8 +102,8 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
-/// Return the errors of a scene with one part, spring or solver that has the given members besides the
-/// required ones.
+/// Return the errors of a scene with one part, spring or solver that has the given members. The part also has
+/// a name, a shape and a mass, and the spring also has a part.
 std::string part_faults(const std::string& members) {
   return faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": 1,\n" + members +
                 "}]}");

@@ -19,7 +19,8 @@ struct NamedMesh {
   std::string name;  ///< name of the part, obstacle or plane
   Color color{};
   TriangleMesh mesh;       ///< m, world
-  VecX<double> values{};   ///< quantity of the scene's coloring at each vertex; empty without a coloring
+  VecX<double> values{};   ///< quantity of the scene's coloring at each vertex; empty without a coloring, or
+                           ///< with Values::omitted
   bool by_values = false;  ///< whether pictures colour the mesh by `values`
 };
 
@@ -40,18 +41,19 @@ class FrameMeshes {
   /// Returns the bounding box of the visible parts, all visible obstacles, and the planes that act at the
   /// time of the state, m, world.
   Eigen::AlignedBox3d bounds(const State& state) const;
-  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if no part
-  /// is. The maximum is not used, because at a point force it grows without bound as the mesh is refined.
+  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if no
+  /// visible part is coloured by values. The maximum is not used, because at a point force it grows without
+  /// bound as the mesh is refined.
   std::optional<double> high_value(const State& state) const;
-  /// Returns the number of triangles of all meshes.
+  /// Returns the number of triangles of all visible parts, obstacles and planes.
   std::int64_t triangles() const;
 
  private:
   struct Shown {
     std::size_t part;
     bool rigid;
-    std::optional<Surface> surface;  // for a part without nodes
-    SurfaceNodes nodes;              // for a part with nodes
+    std::optional<Surface> surface;  // for a part without local deformation
+    SurfaceNodes nodes;              // for a part with local deformation
     TriangleMesh body;               // for a rigid part: its mesh in the body frame
     std::optional<SurfaceValues> values;
   };

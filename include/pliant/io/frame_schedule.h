@@ -2,7 +2,7 @@
 // mesh file of one moment; frame k is at time k / rate. A frame at the end of a step shows the state there.
 // For a frame within a step, the states at the start and at the end of the step are recorded, so that the
 // frame is interpolated within a single step. The first and the last state are always recorded. With variable
-// steps, a state is recorded if a frame lies in the step before it or may lie in the step after it.
+// steps, a state is recorded if a frame is within the step before it or may be within the step after it.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace pliant {
 class FrameSchedule {
  public:
   /// Makes the schedule of a run from time 0 to `end` (s, >= 0) in steps of about `step` (s, > 0), with
-  /// `rate` (> 0) frames per second. If end is not a multiple of step (to 1e-9), the step is reduced to end /
-  /// ceil(end / step). Throws std::invalid_argument if a number is out of range, or if the run would have
-  /// more than 1e12 steps or frames.
+  /// `rate` (> 0) frames per second. If end is not a multiple of step (to a relative 1e-9), the step is
+  /// reduced to end / ceil(end / step). Throws std::invalid_argument if a number is out of range, or if the
+  /// run would have more than 1e12 steps or frames.
   FrameSchedule(double end, double step, double rate);
   /// Returns the schedule of a resumed run, whose step must not change. The run ends with the first step that
   /// ends at or after `end`.

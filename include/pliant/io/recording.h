@@ -1,8 +1,8 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
-// state is a state after a step, never an interpolated one. A run resumed from it reproduces all later states
-// bit by bit. layout.json names every column.
+// state is the initial state or a state after a step, never an interpolated one. A run resumed from it
+// reproduces all later states bit by bit. layout.json names every column.
 #pragma once
 
 #include <cstdint>
@@ -57,8 +57,8 @@ class RecordingWriter {
 /// Reads the states of a recording. The number of rows is fixed on opening.
 class Recording {
  public:
-  /// Opens a recording. Throws std::system_error if a file cannot be read, RecordingMismatch if the columns
-  /// differ from those of the model.
+  /// Opens a recording. Throws std::system_error if a file cannot be read, RecordingMismatch if it is damaged
+  /// or its columns differ from those of the model.
   Recording(const std::filesystem::path& folder, const Model& model);
 
   std::int64_t rows() const { return static_cast<std::int64_t>(times_.size()); }
@@ -69,9 +69,10 @@ class Recording {
   /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
   /// With error control, the state between two recorded states is the result of a shorter step of dop853
-  /// (order 8) from the first of them, if a full step of dop853 leads to the second one. Otherwise q is the
-  /// quintic interpolant of q, v and the accelerations, and v is linear. Times outside the recording give its
-  /// first or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
+  /// (order 8) from the first of them, if no part deforms locally and a full step of dop853 leads to the
+  /// second one. Otherwise q is the quintic interpolant of q, v and the accelerations, and v is linear;
+  /// README.md of this folder describes the exceptions for impacts and contact. Times outside the recording
+  /// give its first or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
   State at(double time) const;
 
  private:

@@ -2,16 +2,17 @@
 // ends. The table has a header line and one line per recorded state. Numbers have the shortest form that
 // reads back exactly. Columns:
 //   t                                        s
-//   for every moving part NAME (scenes of up to kMaxParts parts, or if the scene requests it):
+//   for every part NAME that is not fixed and has no prescribed motion (scenes of up to kMaxParts parts, or
+//   if the scene requests it):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of its frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s, world; rad/s, body frame
 //     NAME.PARAMETER_dot                     rates of the dynamic parameters
-//     NAME.com.x y z                         centre of mass (m, world), if it is not the frame's origin
+//     NAME.com.x y z                         centre of mass (m, world), if it may differ from NAME.c
 //   track.NAME.x y z                         tracked points, m, world
 //   if the parts have columns, for every joint NAME:
 //     joint.NAME.force.x y z                 force on the first side of the joint, N, world
-//     joint.NAME.torque.x y z                N m about the joint, for joints that constrain rotation
+//     joint.NAME.torque.x y z                torque on this side about the joint, N m, if it has one
 //     joint.NAME.gap                         gap, m
 //   energy.kinetic gravity elastic springs total, work.KIND   J; energy.local with local deformation
 //   balance                                  J: energy.total - its value at time 0 - all works

@@ -15,10 +15,11 @@
 
 namespace pliant {
 
-/// Makes the picture at any time of a recording: the parts, the tracks up to that time, and springs, rods
-/// and strings as thin lines. Each point of a spring or a joint that is attached to the world is a dot. All
-/// frames of a run have the same camera, ground and scale of values. If the scene does not set these, they
-/// are computed from the whole recorded motion.
+/// Makes the picture at any time of a recording: the visible parts, obstacles and planes, the tracks up to
+/// that time, and springs, rods and strings as thin lines. Each point of a spring or a joint that is attached
+/// to the world is a dot. Scene::show_springs switches these lines and dots off. All frames of a run have the
+/// same camera, ground and scale of values. If the scene does not set these, they are computed from the whole
+/// recorded motion.
 class Film {
  public:
   /// scene, model, recording: must outlive the film. Throws RecordingMismatch, and std::out_of_range if the

@@ -27,7 +27,7 @@ struct Picture {
   /// The range of values of the colour map (color_map.h), shown as a bar at the right. Values outside have
   /// the first or the last colour. Pictures narrower than 160 pixels or lower than 120 have no bar.
   struct Scale {
-    std::string title;  ///< digits, small letters and . , - + / ( ), as in "displacement (m)"
+    std::string title;  ///< digits, small letters, blanks and . , - + / ( ), as in "displacement (m)"
     double low = 0, high = 1;
   };
 

@@ -12,8 +12,8 @@ namespace pliant {
 
 /// A number at each vertex of a part's surface. Rigid motion of the part changes neither quantity.
 enum class SurfaceQuantity {
-  displacement,  ///< |p - X|, m: distance of the vertex from its rest position X, both in the frame of the
-                 ///< part; global parameters and local deformation d contribute
+  displacement,  ///< |p - X|, m: distance of the position p of the vertex from its rest position X, both in
+                 ///< the frame of the part; global parameters and local deformation d contribute
   strain,        ///< largest principal Green strain of the surface relative to rest (SurfaceStrain)
 };
 
@@ -32,8 +32,9 @@ std::optional<SurfaceQuantity> find_quantity(const std::string& name);
 struct Coloring {
   SurfaceQuantity by = SurfaceQuantity::strain;
   /// Values of the first and the last colour; values outside the range get the nearer of these two colours.
-  /// When absent, the range is from 0 to the 99th percentile of the values at all vertices in the whole
-  /// recorded motion, rounded up.
+  /// When absent, the range is from 0 to the highest value, rounded up to a round number; [0, 1] if the
+  /// highest value is rounding error. The highest value is the largest, over all recorded states, of the 99th
+  /// percentile of the values at the vertices of all coloured parts in a state.
   std::optional<std::array<double, 2>> range;
   std::vector<const Part*> parts;  ///< coloured parts; empty: all parts that deform
 };

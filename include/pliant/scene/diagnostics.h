@@ -22,12 +22,13 @@ struct Diagnostic {
   Severity severity = Severity::kError;
 };
 
-/// Returns the diagnostic as one line without a line break. Control characters, bytes that are not UTF-8 and
-/// characters that change the writing direction are escaped, so that a file cannot control the terminal.
+/// Returns the diagnostic as one line without a line break. The texts are escaped as by escaped(), so that a
+/// file cannot control the terminal.
 std::string to_string(const Diagnostic& diagnostic);
 
-/// Returns the text with all characters escaped that must not reach a terminal: line feed, escape, and
-/// characters that change the writing direction.
+/// Returns the text with everything escaped that must not reach a terminal: control characters, such as line
+/// feed and escape, line separators, byte-order marks, characters that change the writing direction, and
+/// bytes that are not UTF-8.
 std::string escaped(std::string_view text);
 
 class Diagnostics {

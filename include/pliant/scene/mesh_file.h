@@ -16,8 +16,8 @@ struct MeshFile {
 };
 
 /// Reads all meshes of a file, each transformed by the nodes of the file that contain it (glTF). Throws
-/// FileError if the file cannot be read and std::invalid_argument if it is not a mesh. ObstacleMesh checks
-/// the topology of the result.
+/// FileError if the file cannot be read and std::invalid_argument if it is not a mesh of triangles and
+/// polygons with finite vertices. ObstacleMesh checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
 
 /// Returns the file name under which a run stores the mesh of an obstacle in its folder.

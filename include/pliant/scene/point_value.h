@@ -12,12 +12,12 @@ struct MaterialPointValue {
   enum class Form {
     kCoordinates,  ///< x = (u, v, w); u and v in rad
     kDirection,    ///< x = direction from the origin of the body frame, not zero, of arbitrary length
-    kNear  ///< x = position in the body frame (m). Inside the part: the material point there. Outside:
-           ///< the surface point with the u and v of this position.
+    kNear  ///< x = position in the body frame (m). Inside a solid: the material point there. Outside, at most
+           ///< twice as far out as the surface, and in a shell: the surface point with its u and v.
   };
   Form form = Form::kCoordinates;
   Vec3<double> x = Vec3<double>::Zero();
-  double w = 1;      ///< radial coordinate: 0 at the centre, 1 on the surface
+  double w = 1;      ///< radial coordinate: 0 at the centre, 1 on the surface; not used by kNear
   double patch = 0;  ///< radius over which a load is spread among nodes, m; 0: no patch
 };
 

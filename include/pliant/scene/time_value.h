@@ -1,5 +1,5 @@
 // The JSON value of a function of time: a number, a formula of t in quotes, or key frames {"t": [...], "y":
-// [...]}.
+// [...]} with optional "end_rates".
 #pragma once
 
 #include <string>

@@ -34,7 +34,8 @@ class NamedRows {
   std::string names_;
 };
 
-/// A difference or a component that is at most this, relative to its contributions, is rounding error.
+/// A row of C_q or a component of an impulse counts as rounding error if it is at most this, relative to the
+/// terms of which it is the sum.
 constexpr double kCancelled = 1e-9;
 
 /// Returns the number of constraint rows of a joint that are zero in C_q. An example is a rod whose ends

@@ -59,7 +59,7 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 int automatic_threads(Scene& scene) {
   // Lower bounds of the cost of an evaluation in microseconds, measured with bench/step_bench: per part, per
   // mass point and parameter, and per strain point. Dispatching work to the thread pool and waiting for it
-  // takes about 10 microseconds.
+  // takes about 10 microseconds. A thread is therefore used for every worth_a_thread microseconds.
   constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {

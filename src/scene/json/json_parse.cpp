@@ -100,7 +100,8 @@ class Builder final : public nlohmann::json_sax<json> {
     return begin;
   }
   /// Moves the cursor past the next token, a number or a literal. Returns the offset of the token. The event
-  /// parser reads "truex" and "1.5m" as a value followed by other text; here the whole word is the fault.
+  /// parser reads "truex" and "1.5m" as a value followed by other text. This function then throws the Fault,
+  /// so that the message shows the whole word.
   std::size_t word_token() {
     const std::size_t begin = next();
     const std::size_t end = word_end(text_, begin);

@@ -21,7 +21,8 @@ struct ParseOptions {
   std::function<void(const Fault&)> report;       ///< receives faults that do not end the parsing
 };
 
-/// Returns the value of a text. Throws Fault after a syntax fault.
+/// Returns the value of a text. Throws Fault after a fault that ends the parsing: of syntax, or an exceeded
+/// limit.
 JsonValue parse(std::string_view text, const ParseOptions& options);
 
 }  // namespace pliant::json

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns "; did you mean "NAME"?" with the most similar name in the folder of a path that does not exist.
+/// If no name is similar, returns an empty text. If the folder does not exist, returns a text that says so.
 std::string nearest_file(const fs::path& path) {
   std::error_code ignored;
   std::vector<std::string> names;

@@ -20,9 +20,10 @@ schema::Record coloring_record() {
       "coloring",
       "Colours of parts by their deformation, with a colour bar. When absent, parts have their own colours.",
       {required("by", choice(std::move(quantities)), "The quantity that the colours show.", "\"strain\""),
-       optional("range", range,
-                "Values of the first and the last colour; when absent, from 0 to the 99th percentile of the "
-                "values at all vertices in the whole motion."),
+       optional(
+           "range", range,
+           "Values of the first and the last colour. When absent, from 0 to a round number above the "
+           "99th percentile of the values at all vertices, in the recorded state in which it is largest."),
        optional("parts", array(name(), 1), "Names of the parts; when absent, all parts that deform.")}};
 }
 

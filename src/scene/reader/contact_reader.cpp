@@ -72,11 +72,13 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
        optional("restitution", number(between(0, 1), "1"),
                 "Ratio of the normal speed after an impact to the speed before it.", "0"),
        optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
-       optional("longest_step", number(above(0), "s"),
-                "Longest step with a \"tolerance\" in lasting contact, if a force acts, more than eight "
-                "bodies move or a body deforms locally. The error of these contacts is not controlled. For "
-                "tolerances above 5e-4 the longest step grows in proportion, up to ten times.",
-                "0.002"),
+       optional(
+           "longest_step", number(above(0), "s"),
+           "Longest step with a \"tolerance\" in lasting contact. It applies if the scene has \"forces\", "
+           "if more than eight bodies move, or if a body deforms locally. In the last two cases the error "
+           "of these contacts is not controlled. For tolerances above 5e-4 the longest step grows in "
+           "proportion, up to ten times.",
+           "0.002"),
        optional("sleep", record(sleep_record()), "Sleep of bodies at rest; when absent, no body sleeps."),
        optional("planes", array(record(plane_record(color))), "Impenetrable planes.", "[]"),
        optional("obstacles", array(record(obstacle_record(orientation, color))),

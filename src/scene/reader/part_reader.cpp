@@ -216,7 +216,8 @@ void PartReader::read_motion(const Reader& r) {
   part_->prescribe(std::move(motion));
 }
 
-/// Checks the keys that need a part without dynamic parameters or without local deformation.
+/// Checks the keys that need a part without dynamic parameters or without local deformation. Warns of
+/// velocities of a part that is fixed or has a prescribed motion.
 void PartReader::check_rigid_keys() {
   const Parameters& all = part_->parameters();
   if (all.n_dynamic() > 0) {

@@ -21,7 +21,8 @@ class PartReader {
              const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
       : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
 
-  /// Returns the part, or null if its shape or its deformations are unknown. Faults are reported.
+  /// Returns the part, or null if its shape is missing or unknown, or if its deformations have a fault.
+  /// Faults are reported.
   std::unique_ptr<Part> read();
   /// Returns whether the part is prepared without faults, so that points on it can be resolved.
   bool prepared() const { return prepared_; }

@@ -37,8 +37,8 @@ std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>
     double in = spacing * i, out = spacing * (i + 1);
     const auto at = static_cast<std::size_t>(i);
     if (!(sample[at] < 0)) {
-      // Between samples that are all outside, a body thinner than the spacing can only be near a minimum. The
-      // golden section search looks for it.
+      // Between samples that are all outside, a body thinner than the spacing can only be near a minimum of
+      // outside(). The golden section search looks for it.
       if (i == 0 || sample[at] > sample[at - 1] || sample[at] > sample[at + 1]) continue;
       constexpr double golden = 0.6180339887498949;
       double low = spacing * (i - 1), high = out;

@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-/// A name of a part in the scene and the part, if it has no faults.
+/// A name of a part in the scene, and the part if it could be made.
 struct NamedPart {
   const JsonValue* name = nullptr;  ///< the value of its key "name"
   Part* part = nullptr;             ///< null if the part could not be made

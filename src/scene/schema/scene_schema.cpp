@@ -161,7 +161,9 @@ Record part_record() {
                 "Prescribed motion; the part then has no degrees of freedom."),
        optional("color", color(), "Colour in pictures; when absent, a colour of a palette."),
        optional("resolution", integer(between(1, 128)),
-                "Edges of the surface mesh along an eighth of a circle (48 n^2 triangles).", "8"),
+                "Edges n of the surface mesh along an eighth of a circle: 48 n^2 triangles, or 64 n^2 for a "
+                "torus.",
+                "8"),
        optional("visible", boolean(), "Whether pictures and meshes show the part.", "true")});
   part.exclusive = {{{"density", "mass", "inertia"}}, {{"fixed", "motion"}}};
   return part;
@@ -314,9 +316,9 @@ const Type& parameter_type() {
           {number(unbounded(), "m, rad or 1"),
            record(
                {"parameter",
-                "A global parameter. It is dynamic, a degree of freedom, if \"dynamic\" is true or an "
-                "initial "
-                "value, an initial rate or a stiffness is given; otherwise it is frozen at its rest value.",
+                "A global parameter. It is dynamic, a degree of freedom, if \"dynamic\" is true, or if an "
+                "initial value, an initial rate, a stiffness or a row of \"stiffness_matrix\" is given. "
+                "Otherwise it is frozen at its rest value.",
                 {optional("rest", time_function("m, rad or 1"),
                           "Rest value; for a dynamic parameter it may change in time."),
                  optional("dynamic", boolean(), "Whether it is a degree of freedom.", "false"),

@@ -26,7 +26,7 @@ class NpyWriter {
 
   /// Appends one row, with one number per column. The row stays in memory until flush().
   void append(const double* row);
-  /// Writes the pending rows, then the header with their number.
+  /// Writes the pending rows, then the header with the number of all rows.
   void flush();
   /// Flushes and waits until the data is on the disk.
   void flush_to_disk();

@@ -1,5 +1,6 @@
 // Binary PLY files of a frame. Each vertex has the colour and the index of its mesh, and one normal: the
-// normalised sum of the normals of its triangles. One normal per vertex keeps closed meshes closed.
+// normalised sum of the normals that its triangles have at this vertex. One normal per vertex keeps closed
+// meshes closed.
 #pragma once
 
 #include <filesystem>

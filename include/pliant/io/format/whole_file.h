@@ -1,6 +1,6 @@
 // Files that are whole or absent. A file is written under a temporary name in the folder of the target,
-// closed with a check, and then renamed. A reader sees either the old or the new file, never a part. A
-// symbolic link with the name of the target is replaced, not followed.
+// closed, and renamed if closing reports no error. A reader sees either the old or the new file, never a
+// part. A symbolic link with the name of the target is replaced, not followed.
 #pragma once
 
 #include <cstddef>

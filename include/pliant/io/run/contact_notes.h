@@ -22,9 +22,9 @@ inline constexpr double kReportedOverlap = 1e-3;
 /// obstacle. Two of the last three are -1.
 using TouchingPair = std::array<int, 4>;
 
-/// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation: the
-/// deepest contact of each pair that is not yet in `reported`, with the name of a joint that may prevent the
-/// separation. If there are more than ten pairs, only the ten deepest are listed, with the number of the
+/// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation and are
+/// not yet in `reported`. A note gives the deepest contact of a pair and the name of a joint that may prevent
+/// the separation. If there are more than ten pairs, only the ten deepest are listed, with the number of the
 /// others. All these pairs are added to `reported`.
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
 

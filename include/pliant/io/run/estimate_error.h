@@ -1,5 +1,6 @@
-// The error estimate of a run. The run is repeated with a tenth of its tolerance and half the longest
-// contact step, or with half its fixed step. The two runs are compared at every recorded time.
+// The error estimate of a run. The run is repeated with a tenth of its tolerance (at least kMinTolerance) and
+// half the longest contact step, or with half its fixed step. The two runs are compared at every recorded
+// time.
 #pragma once
 
 #include <string>
@@ -22,7 +23,7 @@ struct ErrorEstimate {
   double energy = 0;               ///< total energy, J
   double joint_force = 0;          ///< force of a joint with equal modes in both runs, N
   double joint_torque = 0;         ///< torque of such a joint, N m
-  double gap = 0;                  ///< largest gap of a closed joint of the run, m
+  double gap = 0;                  ///< largest gap of a closed joint of the run, m (not a difference)
   double tolerance = 0, step = 0;  ///< tolerance and fixed step (s) of the repetition; one of them is 0
 };
 

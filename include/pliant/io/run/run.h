@@ -37,8 +37,8 @@ class Run {
  public:
   /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
   /// run locks and reads the folder. Throws std::invalid_argument (a bad scene), OutputRefused,
-  /// RecordingMismatch (resuming with another scene, build, step, method or frame rate), std::system_error.
-  /// The scene must outlive the run.
+  /// RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame rate, or a
+  /// damaged recording), std::system_error. The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
@@ -90,7 +90,7 @@ class Run {
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
-  /// Shows a note and adds it to run.json, unless it is there already.
+  /// Shows a note. Adds the note to run.json, unless it is there already.
   void note(const std::string& text);
   void note_redundancy();
   void note_engagements();

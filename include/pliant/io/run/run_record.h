@@ -60,9 +60,10 @@ struct RunRecord {
   double max_energy = 0;   ///< largest |total energy| at a recorded state, J
   double max_kinetic = 0;  ///< largest kinetic energy at a recorded state, J
   double max_gap = 0;      ///< largest gap of a closed joint at a recorded state, m
-  double max_depth = 0;    ///< largest contact depth at a recorded state / size of the smaller part
-  double open_gap = 0;     ///< widest gap of an open joint at the last state, m
-  int asleep = 0;          ///< number of sleeping parts at the last state
+  /// Largest ratio of a contact depth to the size of the smaller part, at a recorded state.
+  double max_depth = 0;
+  double open_gap = 0;                 ///< widest gap of an open joint at the last state, m
+  int asleep = 0;                      ///< number of sleeping parts at the last state
   std::optional<ErrorEstimate> error;  ///< error estimate, if requested
   std::vector<std::string>
       parameters_without_inertia;    ///< parameters without inertia, which were kept constant

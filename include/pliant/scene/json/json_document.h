@@ -24,9 +24,10 @@ class JsonDocument {
   static constexpr std::size_t kMaxValues = 4'000'000;
   static constexpr int kMaxDepth = 64;
 
-  /// Reads a file ("-" is standard input). Throws FileError if it cannot be read, SceneError after a syntax
-  /// fault. Faults that leave the syntax intact (duplicate keys, numbers that round to zero, NUL in a string)
-  /// are added to `faults`, and reading continues.
+  /// Reads a file ("-" is standard input). Throws FileError if it cannot be read or has more than kMaxBytes,
+  /// and SceneError after a syntax fault, a number that overflows, or an excess over kMaxDepth or kMaxValues.
+  /// Faults that leave the syntax intact (duplicate keys, numbers that round to zero, \u0000 in a string) are
+  /// added to `faults`, and reading continues.
   static JsonDocument read(const std::string& path, Diagnostics& faults);
   /// Reads a text; `name` replaces the file name in messages. Throws and reports faults as read() does.
   static JsonDocument parse(std::string name, std::string text, Diagnostics& faults);
@@ -46,13 +47,15 @@ class JsonDocument {
 
   /// Returns the value at a JSON pointer, or null if there is none.
   const JsonValue* at(std::string_view pointer) const;
-  /// Returns the JSON pointer of a value of this document, which is found by its address.
+  /// Returns the JSON pointer of a value of this document, which is found by its address; empty for the root,
+  /// and for a value that is not in this document.
   std::string pointer_to(const JsonValue& value) const;
-  /// Returns a value as it is written in the file, shortened for a message. Objects and long arrays are only
-  /// described.
+  /// Returns a value as it is written in the file, shortened for a message. Objects, long arrays and arrays
+  /// with an object are only described.
   std::string shown(const JsonValue& value) const;
 
-  /// Return a fault at a value, at a key of an object, or inside a string at a byte of its decoded text.
+  /// Return a fault at a value, at a key of an object (at the object itself if it has no such key), or inside
+  /// a string at a byte of its decoded text.
   Diagnostic fault(const JsonValue& value, std::string message, Severity severity = Severity::kError) const;
   Diagnostic fault_at_key(const JsonValue& object, std::string_view key, std::string message,
                           Severity severity = Severity::kError) const;

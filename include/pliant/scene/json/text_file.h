@@ -7,8 +7,9 @@
 
 namespace pliant {
 
-/// Thrown for a file that cannot be read. what() is "path: reason": the message of the operating system and,
-/// for a missing file, the nearest name in the folder.
+/// Thrown for a file that cannot be read. what() begins with the path. Then it gives the limit of a file that
+/// is too large, or the message of the operating system and, for a missing file, the nearest name in its
+/// folder.
 class FileError : public std::runtime_error {
  public:
   enum class Reason { kMissing, kNotReadable, kTooLarge };

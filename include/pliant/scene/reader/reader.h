@@ -56,7 +56,8 @@ class Reader {
 
   /// Returns a reader of the object under a key, or else of the default of the key. If the type has several
   /// records, the reader has the one that the object was validated against. If there is neither object nor
-  /// default and the type is a single record, the values of the reader are the defaults of this record.
+  /// default and the type is a single record, the values of the reader are the defaults of this record; for
+  /// other types std::logic_error is thrown.
   Reader object(const std::string& key) const;
   /// Returns the objects of the array under a key; empty for an absent key.
   std::vector<Reader> objects(const std::string& key) const;
@@ -71,7 +72,8 @@ class Reader {
   const FaultyValues* faulty_;
 };
 
-/// Returns the record of a type that an object was validated against, or null for a type without records.
+/// Returns the record of a type that an object was validated against, or null if no record of the type fits
+/// the object.
 const schema::Record* chosen_record(const schema::Type& type, const JsonValue& object);
 
 Vec3<double> read_vector3(const JsonValue& value);

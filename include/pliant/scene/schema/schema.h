@@ -112,8 +112,9 @@ Type map(Type element);
 Type record(Record fields);
 /// An object whose key `tag` selects the record, as {"type": "taper", ...}. The records do not list the tag.
 Type tagged(std::string tag, std::vector<Record> records);
-/// One of several types. The JSON type of a value selects the alternative; for objects, the keys present
-/// decide too. Only faults of the selected alternative are reported.
+/// One of several types. The JSON type of a value selects the alternative. For objects, the keys present
+/// decide too; among several alternatives for arrays, the one with the fewest faults is selected. Only faults
+/// of the selected alternative are reported.
 Type one_of(std::vector<Type> alternatives);
 
 /// A key of a record.
@@ -153,14 +154,14 @@ struct Record {
 
 /// Returns the alternative of a kOneOf type that fits the keys of an object best. It declares most of these
 /// keys, where a required key outweighs all optional ones; among equals it is the first one. Returns null if
-/// several alternatives accept objects and none declares a key of this object.
+/// no alternative accepts objects, or if several do and none declares a key of this object.
 const Type* chosen_alternative(const Type& one_of, const JsonValue& object);
 
 /// Returns whether a key is ignored in every object: comments "//" and extensions "x-...".
 bool is_ignored_key(const std::string& key);
 
 /// Returns the JSON Schema (draft-07) of a scene with this root record: each key with its description, unit,
-/// default and range.
+/// range, and default or example.
 std::string schema_json(const Record& root);
 
 }  // namespace pliant::schema
