@@ -197,7 +197,8 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
 }
 
 /// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity is
-/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger.
+/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger. The largest
+/// rate of a local displacement is added.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());
