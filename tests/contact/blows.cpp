@@ -163,7 +163,8 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
                            Y = impact.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
         const VecX<double> u = Jc * impact.before.v, u_after = Jc * impact.after.v;
         REQUIRE(u[0] < -1);
-        // The impulse that stops the relative motion; for the sliding contact, the impulse that acted.
+        // The impulse that stops the relative motion. For the contact that slides with friction, it is
+        // replaced by the impulse that acted.
         VecX<double> p = -Nc.ldlt().solve(u);
         if (mu == 0.03) {
           const Contact& contact = impact.record.contacts[0];
@@ -284,7 +285,7 @@ TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact
 }
 
 TEST_CASE(
-    "pairs in lasting contact conserve momenta to first order, and the linear one to rounding if untapered",
+    "pairs in lasting contact conserve momenta to first order, and linear momentum to rounding if untapered",
     "[contact][long]") {
   for (const bool tapered : {false, true}) {
     std::vector<double> linear, angular;
