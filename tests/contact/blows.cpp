@@ -54,9 +54,8 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// Adds `sign` times the derivative with respect to v of the velocity (world frame) of the contact point of
-/// one side to L. The columns of this derivative are (I, -R [p]x, R J). A side without coordinates adds
-/// nothing.
+/// Adds `sign` times a derivative to L: the derivative, with respect to v, of the velocity of one side at the
+/// contact point (world frame). Its columns are (I, -R [p]x, R J). A side without coordinates adds nothing.
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;

@@ -95,7 +95,7 @@ TEST_CASE("a heavy part on light ones needs iterations only in cold steps with t
   Simulation warm(body, "rk4"), cold(body, "rk4");
   const long warm_sweeps = sweeps(warm, 44, [](State&) {}), cold_sweeps = sweeps(cold, 44, clear_cache);
   CAPTURE(warm_sweeps, cold_sweeps);
-  CHECK(cold_sweeps <= 44 * 20);  // the first round of sweeps suffices
+  CHECK(cold_sweeps <= 44 * 20);  // the first round of sweeps suffices; it has 12 sweeps
   CHECK(warm_sweeps <= 6 * 20);
   CHECK(warm.step_counters().contact_residual < 1e-11);
   CHECK(warm.state().v.norm() < 1e-11);

@@ -22,14 +22,14 @@ namespace pliant {
 namespace step_doubling {
 
 /// Bodies in contact whose state changes by at most this in a step, in tolerances, are at rest: the error of
-/// the step is zero.
+/// the step is zero. Bodies with prescribed motion (has_prescribed_motion()) are an exception.
 inline constexpr double kAtRestTolerance = 1e-2;
 
 /// The whole step and its halves resolve an impact, or a change of contact points, at different times. If one
 /// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
-/// A difference is a jump if it exceeds this multiple of the speed that gravity gives a body in the step.
-/// Then the error is measured by the displacement that the jump causes in the step, if the step is no longer
-/// than longest_contact_step() with the default settings.
+/// A difference is a jump if the results do not agree (agree()) and it exceeds this multiple of the speed
+/// that gravity gives a body in the step. Then the error is measured by the displacement that the jump causes
+/// in the step, if the step is no longer than longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
