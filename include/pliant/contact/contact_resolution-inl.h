@@ -25,8 +25,10 @@ namespace contact_resolution {
 /// Overlapping bodies are separated at most at this speed, in sizes of the smaller body per second, plus the
 /// speed of their own travel.
 inline constexpr double kSeparationSpeed = 1;
+/// Largest number of rounds of a separation, because a round may push bodies into others.
 inline constexpr int kMaxSeparationRounds = 16;
-/// Largest number of successive resolutions in a step when impulses push bodies into others (resolve_chain).
+/// Largest number of successive resolutions after a motion whose impulses push bodies into others
+/// (resolve_chain).
 inline constexpr int kMaxChainLinks = 4;
 /// Overlaps below this share of the largest gap of a resting contact (RestingContacts::tight_gap) are not
 /// separated.

@@ -48,8 +48,9 @@ class ContactResolution {
   /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
-  /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions.
-  /// Approaches and rebounds that are slower than min_impact_speed (m/s) are ignored.
+  /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the
+  /// fourth is needed, StepCounters::contact_cutoffs grows by one. Approaches and rebounds that are slower
+  /// than min_impact_speed (m/s) are ignored.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
   /// After a change of velocities and coordinates of some parts, projects all joints and the frames of these

@@ -19,7 +19,7 @@ namespace pliant {
 
 class ContactStepping {
  public:
-  /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder.
+  /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder and Sleeping.
   explicit ContactStepping(const Dynamics& dynamics);
 
   /// Begins a step, for which step() may be called several times, with an empty record. undo_step() replaces
@@ -39,8 +39,8 @@ class ContactStepping {
   /// shortened it. length: the actual length of the step, s. impacts: the count of impacts before the step.
   /// step.state: on input the state at the end of the step, on output that of the halves. Returns the larger
   /// of two errors, in tolerances, and the length of the halves. The first is that of contact, the second
-  /// that of the method in the halves. If the bodies in contact were at rest, the error is 0 and the step is
-  /// not repeated. If the halves fail, the error is infinite.
+  /// that of the method in the halves. If the bodies in contact were at rest and have no prescribed motion,
+  /// the error is 0 and the step is not repeated. If the halves fail, the error is infinite.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
                              const State& initial, double length, long impacts);
 
