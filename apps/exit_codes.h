@@ -20,6 +20,6 @@ enum ExitCode {
 inline constexpr const char* kExitCodesHelp =
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 4 joints contradict each other,\n"
     "5 numerical failure, 7 file system, 8 resources (memory, graphics), 9 would overwrite files,\n"
-    "10 recording does not match the scene or program, 130/143 stopped by a signal (continue with --resume).";
+    "10 recording does not match the scene or program, 128 + N stopped by signal N (continue with --resume).";
 
 }  // namespace pliant_cli

@@ -1,5 +1,5 @@
-// Validators of option values. A validator accepts a value only if its whole text is a valid number. The
-// result does not depend on the locale.
+// Validators of option values. A validator accepts a value only if its whole text is valid. The result does
+// not depend on the locale.
 #pragma once
 
 #include <string>

@@ -65,9 +65,9 @@ pliant_missing() {
   done
 }
 
-# Installs, as root or through sudo, the missing packages of the list pliant_packages and of the words in the arguments. If that
-# is impossible, prints the names of the missing packages and ends with status 4. On other systems than Debian, only prints the
-# names of all packages.
+# Installs, as root or through sudo, the missing packages of the list pliant_packages and of the words in the arguments. If
+# that is impossible, prints the names of the missing packages and ends the script with status 4. On other systems than
+# Debian, only prints the names of all packages.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" $pliant_packages "$@"

@@ -1,4 +1,5 @@
-// Progress on standard error: a bar on a terminal, occasional lines elsewhere, nothing if quiet.
+// Progress on standard error: a bar on a terminal, elsewhere a line at each tenth of a stage that is longer
+// than 2 s, at least once a minute, and at its end; nothing if quiet.
 #pragma once
 
 #include <memory>

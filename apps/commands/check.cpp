@@ -22,7 +22,8 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
-// Estimates the wall-clock time of a run, s, from its first steps, which are computed for 0.05 s.
+// Estimates the wall-clock time of a run, s, from its first steps. Stops these steps after 0.05 s of
+// wall-clock time.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();

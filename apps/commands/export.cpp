@@ -56,7 +56,7 @@ void add_export(CLI::App& app, Action& action) {
   add_frame_options(*command, options->frames);
   add_color_by(*command, options->colors);
   command->add_flag("--force", options->force, "Replace files that exist");
-  command->add_flag("--quiet", options->quiet, "Show errors only");
+  command->add_flag("--quiet", options->quiet, "Show no progress");
   command->footer(
       "Examples:\n"
       "  pliant export out/pull --to ply -o meshes\n"

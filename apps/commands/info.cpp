@@ -63,7 +63,7 @@ void print_part(const pliant::PartModel& model) {
   print_vector(centre, part.size());
   std::cout << " m in its frame, size " << part.size() << " m\n";
   if (inertia.M.rows() >= 6) {
-    // About the centre of mass: I_c = I_o - m (|r|^2 1 - r r^T).
+    // About the centre of mass r: I_c = I_o - m (|r|^2 1 - r r^T), with I_o about the origin of the frame.
     const pliant::Mat3<double> about_origin = inertia.M.block<3, 3>(3, 3);
     const pliant::Mat3<double> about_centre =
         about_origin - inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() -

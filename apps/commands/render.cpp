@@ -89,7 +89,7 @@ void add_render(CLI::App& app, Action& action) {
   command->add_flag("--no-shadows", options->no_shadows, "Draw no shadows");
   add_graphics_option(*command, options->backend);
   command->add_flag("--force", options->force, "Replace pictures that exist");
-  command->add_flag("--quiet", options->quiet, "Show errors only");
+  command->add_flag("--quiet", options->quiet, "Show no progress");
   command->footer(
       "Examples:\n"
       "  pliant render out/pull --size 1920x1080 -o out/pull-hd\n"

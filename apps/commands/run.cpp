@@ -250,7 +250,7 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "--estimate-error", options->estimate,
       "Repeat the run with a tenth of the tolerance, or with half the step, and print the differences; "
       "steps with resting contacts are halved in both cases");
-  command->add_flag("--quiet", options->quiet, "Show errors only");
+  command->add_flag("--quiet", options->quiet, "Show no progress, notes or summary");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
   command
       ->add_flag("--resume", options->resume,

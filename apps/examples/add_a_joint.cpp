@@ -10,7 +10,7 @@ using namespace pliant;
 struct Wire {
   static constexpr const char* name = "wire";
   static constexpr const char* formula = "(x - r cos(k z), y - r sin(k z)) = 0";
-  static constexpr int rows = 2, first = 1, second = 0;  // points on the first and on the second side
+  static constexpr int rows = 2, first = 1, second = 0;  // first, second: numbers of points on the sides
   static constexpr bool one_sided = false;
   double r, k;
 

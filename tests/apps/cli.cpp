@@ -331,7 +331,7 @@ TEST_CASE("options for colouring by values must be complete and valid") {
 
 TEST_CASE("I51: a full file system ends a run with code 7, and its files are complete") {
   const TestFolder place;
-  // The limit is in blocks of 512 bytes: run.json and scene.json fit, but the growing tables soon do not.
+  // The limit is in blocks of 512 bytes: run.json and scene.json fit, but the growing tables soon exceed it.
   const Result result = place.pliant("run top.json --fps 1000 --end 2 -o r --quiet", "ulimit -f 40;");
   CHECK(result.code == 7);
   CHECK(has(result.err, "cannot write"));
@@ -528,7 +528,8 @@ TEST_CASE("pictures from a run and from its recording are identical") {
   CHECK(fs::exists(place.folder / "above/frame_000002.png"));
 }
 
-TEST_CASE("N42: joints that contradict each other end a run with code 4 and their names, for every method") {
+TEST_CASE(
+    "N42: joints that contradict each other end a run with code 4 and their names, also with error control") {
   const TestFolder place;
   set_bytes(place.folder / "apart.json", R"({
     "gravity": [0, 0, 0],

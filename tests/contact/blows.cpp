@@ -54,9 +54,8 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// Adds `sign` times the derivative with respect to v of the velocity (world frame) of the contact point of
-/// one side to L. The columns of this derivative are (I, -R [p]x, R J). A side without coordinates adds
-/// nothing.
+/// Adds `sign` times a derivative to L: the derivative, with respect to v, of the velocity of one side at the
+/// contact point (world frame). Its columns are (I, -R [p]x, R J). A side without coordinates adds nothing.
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;
@@ -163,7 +162,8 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
                            Y = impact.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
         const VecX<double> u = Jc * impact.before.v, u_after = Jc * impact.after.v;
         REQUIRE(u[0] < -1);
-        // The impulse that stops the relative motion; for the sliding contact, the impulse that acted.
+        // The impulse that stops the relative motion. For the contact that slides with friction, it is
+        // replaced by the impulse that acted.
         VecX<double> p = -Nc.ldlt().solve(u);
         if (mu == 0.03) {
           const Contact& contact = impact.record.contacts[0];
@@ -284,7 +284,7 @@ TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact
 }
 
 TEST_CASE(
-    "pairs in lasting contact conserve momenta to first order, and the linear one to rounding if untapered",
+    "pairs in lasting contact conserve momenta to first order, and linear momentum to rounding if untapered",
     "[contact][long]") {
   for (const bool tapered : {false, true}) {
     std::vector<double> linear, angular;

@@ -161,7 +161,7 @@ TEST_CASE("thin crossed parts do not pass through each other", "[contact]") {
   }
   Simulation simulation(body, "rk4");
   test::run(simulation, 0.3, 150);
-  CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // a rotates slightly
+  CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // part a rotates slightly
 }
 
 TEST_CASE("a small ball bounces on a huge part as it does on a plane", "[contact]") {
@@ -388,7 +388,8 @@ TEST_CASE("N58: a plane that hits jointed parts, or appears inside them: their j
   Part& b = test::add(body, "b", "box", {}, 500);
   b.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.05}}).place({0.6, 0, 0});
   body.ball("joint", point(a, 0, 0), point(b, 0, kPi));
-  // The plane becomes active in the lower half of the parts at 0.05 s. If it moves, it rises at 2 m/s.
+  // The plane becomes active at 0.05 s. If it moves, it is then below the parts and rises at 2 m/s; otherwise
+  // it is inside them.
   ContactPlane& plane =
       moved ? body.plane("hand", TimeVector(0, 0, TimeFunction::formula("2 * t - 0.3")), {0.1, 0, 1})
             : body.plane("hand", TimeVector(0, 0, -0.02), {0.1, 0, 1});
@@ -484,7 +485,7 @@ TEST_CASE("the most specific rule for a pair applies, and of equally specific ru
   };
   is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts takes precedence over pairs of groups
   is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group take precedence over two groups
-  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects them, and no pair names both
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects them, and no pair names both parts
   is(rules.of_parts(2, 3), false, 0.1, 0.2);
   is(rules.of_parts(0, 3), true, 0.1, 0.2);
   is(rules.on_plane(0, 0), true, 0, 1);

@@ -1,5 +1,6 @@
-// Energy and momentum in contact: inelastic, frictional motion never gains energy, an impact on a springboard
-// follows the closed form, and a joint that pulls a part through a floor is reported.
+// Energy and momentum in contact: inelastic, frictional motion gains no energy beyond the error of a step,
+// and a rod in Painleve's paradox jams. An impact on a springboard follows the closed form. A joint that
+// pulls a part through a floor is reported.
 #include "catch.h"
 
 #include <cmath>
@@ -105,8 +106,9 @@ void balloon_on_an_arm(MultiBody& body) {
 }
 
 /// Energy gains of a run, relative to the energy at the start. `energy` is the largest rise of the energy in
-/// a step, minus the error of the step. `balance` is the same for the energy minus the work in the ledger.
-/// `sum` is the sum of the energy rises of all steps. `remaining` is the energy at the end.
+/// a step, minus the error of the step. `balance` is the largest rise of the energy minus the work in the
+/// ledger, minus the error of the step. `sum` adds up the positive rises of all steps, each minus the error
+/// of the step. `remaining` is the energy at the end.
 struct Gain {
   test::Worst energy, balance;
   double sum = 0, remaining = 0;

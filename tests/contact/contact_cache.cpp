@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kHalf = 0.1, kStep = 5e-3;  // m, s
 
-/// Rows of boxes on a floor; each row has one box less than the row below, and each box rests on two.
+/// Rows of boxes on a floor; each row has one box less than the row below. Above the lowest row, each box
+/// rests on two.
 void pyramid(MultiBody& body, int rows) {
   for (int row = 0; row < rows; ++row)
     for (int k = 0; k < rows - row; ++k) {
@@ -48,7 +49,7 @@ void clear_cache(State& state) {
   state.contact_cache.clear();
 }
 /// Steps the simulation, each step from a state modified by `change`; returns the number of sweeps of the
-/// solver.
+/// contact solver over the contacts.
 template <class F>
 long sweeps(Simulation& simulation, int steps, F&& change, double h = kStep) {
   const long before = simulation.step_counters().contact_sweeps;
@@ -94,7 +95,7 @@ TEST_CASE("a heavy part on light ones needs iterations only in cold steps with t
   Simulation warm(body, "rk4"), cold(body, "rk4");
   const long warm_sweeps = sweeps(warm, 44, [](State&) {}), cold_sweeps = sweeps(cold, 44, clear_cache);
   CAPTURE(warm_sweeps, cold_sweeps);
-  CHECK(cold_sweeps <= 44 * 20);  // the first round of sweeps suffices
+  CHECK(cold_sweeps <= 44 * 20);  // the first round of sweeps suffices; it has 12 sweeps
   CHECK(warm_sweeps <= 6 * 20);
   CHECK(warm.step_counters().contact_residual < 1e-11);
   CHECK(warm.state().v.norm() < 1e-11);

@@ -59,7 +59,8 @@ Solved solve(MultiBody& body, double speed) {
   return solved;
 }
 
-/// Returns the largest violation of the velocity conditions of all contacts, m/s.
+/// Returns the largest violation of the velocity conditions of all contacts, m/s. Requires that the impulses
+/// are in their friction cones.
 double max_violation(const Solved& solved) {
   double worst = 0;
   for (std::size_t k = 0; k < solved.contacts.size(); ++k) {

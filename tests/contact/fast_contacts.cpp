@@ -1,4 +1,4 @@
-// Fast parts of many shapes against thin parts, planes, meshes and each other: none passes through.
+// Fast parts of three shapes against a thin part, a plane, a mesh and an ellipsoid: none passes through.
 #include "catch.h"
 
 #include <algorithm>
@@ -39,10 +39,10 @@ void set_motion(const Model& model, int part, const Vec3<double>& c, const Eigen
 
 struct ShotResults {
   int hits = 0, passes = 0;
-  double deepest = 0;  ///< deepest overlap after the first contact, in sizes
+  double deepest = 0;  ///< deepest overlap after the first contact, in units of kSize
 };
-/// Shoots parts from above at a wide target at z = 0, or at another part. at: "plane", "mesh", "plate" or
-/// "body". The speeds are up to ten sizes (kSize) a step.
+/// Shoots parts from above at a wide target at z = 0, or at an ellipsoid. at: "plane", "mesh", "plate" (a
+/// thin part) or "body" (the ellipsoid). The speeds are from 0.1 to 10 sizes (kSize) a step.
 ShotResults shoot(const std::string& at, const std::string& shape, int shots, Draws& draws) {
   MultiBody body;
   body.gravity.setZero();
@@ -67,7 +67,8 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
                  speed = sizes_per_step * kSize / kStep;
     const Vec3<double> along =
         Vec3<double>(draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5), -1).normalized();
-    // The flight takes at most two steps, so that the contact occurs at any fraction of a step.
+    // The distance is random, so that the contact occurs at any fraction of a step. Fast parts fly for about
+    // two steps at most, slow ones for more.
     const double distance = draws.uniform(2.2, 2.2 + std::clamp(2 * sizes_per_step, 0.5, 9.8)) * kSize;
     // The offset from the middle of the other part is at most half the smallest semi-axis.
     const Vec3<double> aim = pair ? draws.vector(0.5 * kSmallest / std::sqrt(3.0)) : Vec3<double>::Zero();
@@ -100,8 +101,9 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
   }
   return results;
 }
-/// Shoots parts of all shapes at all targets. `fast_shots` is the number of shots for each pair whose
-/// contacts have closed forms or few sample points, `slow_shots` the number for each other pair.
+/// Shoots parts of all shapes at all targets. `fast_shots` is the number of shots for each pair of a shape
+/// and a target whose contacts have closed forms or few sample points, `slow_shots` the number for each other
+/// pair.
 void shoot_all(int fast_shots, int slow_shots) {
   Draws draws(11);
   for (const std::string at : {"plane", "mesh", "body", "plate"})

@@ -255,7 +255,7 @@ TEST_CASE("N53: fast parts do not pass through a mesh without thickness", "[cont
     const Vec3<double> start(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 0.5);
     const Vec3<double> omega(draws.uniform(-9, 9), draws.uniform(-9, 9), draws.uniform(-9, 9));
     Part& part = is_box ? box(body, {0.05, 0.02, 0.01}, start) : ball(body, 0.02, start);
-    // Up to 10 half extents in a step.
+    // 2 to 10 times the largest half extent in a step.
     const double speed = draws.uniform(2, 10) * part.rest({}).parameters()[0].rest_value() / 1e-2;
     part.velocity(speed * Vec3<double>(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), -1), omega);
     body.plate("plate", {0, 0, 0}, Eigen::Quaterniond::Identity(), 5, 5);

@@ -1,5 +1,5 @@
-// Contact with planes that are active for a short time, or move within a step; and independence of the order
-// of two parts.
+// Contact with planes that are active for a short time, and with planes and parts that move within a step.
+// The order of two parts does not matter. A small part deep in a large one is separated slowly.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>

@@ -1,5 +1,5 @@
-// The search for resting contacts is repeated only near parts that have moved. The result equals that of a
-// search of all parts, bit for bit and in the same order.
+// If few parts have moved, the search for resting contacts is repeated only near these parts. The result
+// equals that of a search of all parts, bit for bit and in the same order.
 #include "catch.h"
 
 #include <pliant/contact/resting_contacts.h>

@@ -1,5 +1,5 @@
-// Sleep of bodies at rest: their states do not change in any bit and need no evaluation; impacts and loads
-// wake them.
+// Sleep of bodies at rest: their states do not change in any bit and need no evaluation; impacts, and changes
+// of what acts on them, wake them.
 #include "catch.h"
 
 #include <algorithm>

@@ -102,7 +102,8 @@ PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3
   }
 }
 
-/// Adds a one-sided row for each parameter at a limit: the parameter must not pass the limit.
+/// Adds a one-sided row for each parameter of the movers that is at a limit: the parameter must not pass the
+/// limit. Parameters without inertia, and those of parts that move by nodes, get no row.
 PLIANT_INLINE void ContactProblem::add_limits() {
   const std::vector<Mover> movers = movers_.all();
   for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
@@ -183,8 +184,8 @@ PLIANT_INLINE void ContactProblem::complete() {
   sides_.clear();
 }
 
-/// Adds the change of the velocities of a mover by unit impulses at a side, without joints, to Y. Y: one
-/// column for each row of the contact; rows: their number.
+/// Adds to Y the change of the velocities of a mover by unit impulses at a side, without the reactions of
+/// joints. Y: one column for each row of the contact. rows: number of these rows.
 PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& side, int rows,
                                                 CoulombSystem::Push& Y) const {
   if (mover.node >= 0) {

@@ -21,8 +21,8 @@ struct ContactSolution {
 
 class ContactProblem {
  public:
-  /// work: contains the masses and joint factors of all touched parts, except parts that are moved node by
-  /// node (evaluate_touched). state, contacts and work must outlive this object.
+  /// work: as evaluate_touched() left it for these contacts. state, contacts and work must outlive this
+  /// object.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
@@ -69,8 +69,8 @@ class ContactProblem {
   struct String {
     int contact, row;
   };
-  /// A side of the contact that is being added. J: velocity of the side in the axes of the contact, from the
-  /// velocities of its part or node.
+  /// A side of the contact that is being added. J maps the velocities of its part or node to the velocity of
+  /// the side in the axes of the contact, with a minus sign for side b.
   struct Side {
     int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;

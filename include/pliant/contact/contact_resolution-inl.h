@@ -25,15 +25,17 @@ namespace contact_resolution {
 /// Overlapping bodies are separated at most at this speed, in sizes of the smaller body per second, plus the
 /// speed of their own travel.
 inline constexpr double kSeparationSpeed = 1;
+/// Largest number of rounds of a separation, because a round may push bodies into others.
 inline constexpr int kMaxSeparationRounds = 16;
-/// Largest number of successive resolutions in a step when impulses push bodies into others (resolve_chain).
+/// Largest number of successive resolutions after a motion whose impulses push bodies into others
+/// (resolve_chain).
 inline constexpr int kMaxChainLinks = 4;
 /// Overlaps below this share of the largest gap of a resting contact (RestingContacts::tight_gap) are not
 /// separated.
 inline constexpr double kAllowedOverlap = 1e-4;
 /// Overlaps of this many units in the last place of the positions are not separated either.
 inline constexpr double kRoundingUlps = 16;
-/// Meshes may overlap by this multiple of that gap.
+/// Contacts at nodes of meshes may overlap by this multiple of RestingContacts::tight_gap.
 inline constexpr double kMeshOverlap = 800;
 /// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
 /// than this share of the size of the smaller body.
@@ -146,7 +148,8 @@ PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, d
   }
 }
 
-/// Records the impulses of one resolution, for the contact cache.
+/// Records the impulses of one resolution, for the contact cache. Zero impulses, and impulses that cannot be
+/// a start value (may_warm_start), are not recorded.
 PLIANT_INLINE void ContactResolution::record_resolved(const State& state, double t,
                                                       const std::vector<Contact>& contacts,
                                                       const ContactProblem& problem,
@@ -204,8 +207,8 @@ PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double 
 }
 
 /// Computes the impulses and limits the displacements that they cause. Adds their work and residual to the
-/// state and the counters, and the reactions of joints to the record. The work of an impulse is that of a
-/// constant force over the motion, to second order. warm: whether the impulses start from the contact cache.
+/// state and the counters, and the reactions of joints to the record. To second order, the work of an impulse
+/// is that of a constant force during the motion. warm: whether the impulses start from the contact cache.
 PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const ResolvedMotion& motion,
                                                        const std::vector<Contact>& contacts, bool warm,
                                                        ContactProblem& problem) {
@@ -256,8 +259,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   ContactProblem problem(dynamics_.model(), state, step.work, contacts);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
-  // follows a prescribed path, or if the impulse acts at one instant. Then the work is the change of the
-  // energy of the touched parts, less the other works of this resolution.
+  // follows a prescribed path, or if the impulse acts at one instant. Then Work::contact, or Work::anchors
+  // for a prescribed path, is corrected: the works of this resolution add up to the change of the energy of
+  // the touched parts.
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state;
   const bool by_energy =
       driven || instant || state.at_limit != before.at_limit || state.joints != before.joints;

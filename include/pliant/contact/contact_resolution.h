@@ -28,9 +28,9 @@ struct ContactRecord {
 
 /// The motion at whose end contacts are resolved.
 struct ResolvedMotion {
-  const State& before;  ///< state at its start; the state of the step itself for an impulse at one instant
+  const State& before;  ///< state at its start; for impacts at one instant the state of the step itself
   double force_time;    ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
-  double h;             ///< length, s; 0 for an impulse at one instant
+  double h;             ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated
 };
 
 class ContactResolution {
@@ -49,11 +49,13 @@ class ContactResolution {
   /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
-  /// during the motion of step.h seconds, and the impacts that follow. Impacts slower than min_impact_speed
-  /// (m/s) do not rebound.
+  /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the
+  /// fourth is needed, StepCounters::contact_cutoffs grows by one. Approaches and rebounds that are slower
+  /// than min_impact_speed (m/s) are ignored.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
-  /// Projects frames and joints after a change of velocities and coordinates of some parts.
+  /// After a change of velocities and coordinates of some parts, projects all joints and the frames of these
+  /// parts if they deform locally (project_frames).
   void reconcile(StepContext& step, const std::vector<int>& parts) const;
 
  private:

@@ -21,25 +21,29 @@ namespace pliant {
 
 namespace contact_stepping {
 
-/// Impacts below this speed do not rebound. Unit: the speed that gravity gives a body in a step.
+/// Rebounds slower than this are left out (FreeMotion::min_impact_speed). Unit: the speed that gravity gives
+/// a body in a step.
 inline constexpr double kMinImpactSpeed = 1e-3;
 /// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up to
 /// the speed that gravity gives a body in a step.
 inline constexpr double kResidualFactor = 8;
-/// Impacts are located if at most this number of pairs meets in a motion, in models with at most this number
-/// of moving parts. To locate an impact, the step of all parts is repeated several times.
+/// Impacts are located if at most kMaxLocatedPairs pairs meet in a motion, in models with at most
+/// kMaxLocatedParts moving parts. To locate an impact, the step of all parts is repeated several times.
 inline constexpr std::size_t kMaxLocatedPairs = 3;
 inline constexpr std::ptrdiff_t kMaxLocatedParts = 8;
-/// Largest number of motions in a step. A motion is so short that no part passes through another.
+/// The step fails if a motion in which no part passes through another would be at most 1 / kMaxMotions of the
+/// rest of the step.
 inline constexpr double kMaxMotions = 1e4;
+/// Largest number of impacts that are located in a step.
 inline constexpr int kMaxLocatedImpacts = 200;
-/// At a located impact, surfaces touch if their gap is below this share of the largest gap of a resting
-/// contact.
+/// At the time of a located impact, a pair that neither rested nor is one of the located pairs touches if its
+/// gap is at most this share of the largest gap of a resting contact.
 inline constexpr double kTouchingGap = 1e-6;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
 /// m/s. It is rounded down to a power of two, so that it rarely changes and the result of the last contact
-/// search stays valid. gravity_speed: speed that gravity gives a body in the step, m/s.
+/// search stays valid. It is 0 if it is at most kMinImpactSpeed times gravity_speed. gravity_speed: speed
+/// that gravity gives a body in the step, m/s.
 inline double residual_speed(double residual, double gravity_speed) {
   const double speed = std::min(kResidualFactor * residual, gravity_speed);
   if (!(speed > kMinImpactSpeed * gravity_speed)) return 0;
@@ -189,7 +193,7 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::advance(Progress& progres
 }
 
 /// Stage 1: predicts which bodies the next motion brings near each other, and how long it may be. Wakes
-/// sleeping parts whose drive changes.
+/// sleeping parts whose Drive (sleeping.h) changes.
 PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progress) {
   State& state = progress.step.state;
   const double now = progress.now, remaining = progress.end - now,
@@ -223,7 +227,8 @@ PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) cons
 }
 
 /// Stage 3: finds the contacts at the end of the motion. Returns false, and restores the state at its start,
-/// if the motion was too long or woke sleeping parts.
+/// if the motion was too long, woke sleeping parts, or brought a part that deforms locally near another body
+/// without a prediction.
 PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   State& state = progress.step.state;
   const FreeMotion& free = motion.free;
@@ -282,8 +287,8 @@ PLIANT_INLINE void ContactStepping::record_resting(const Motion& motion, bool to
     has_unlocated_ = has_unlocated_ || !motion.resting.empty();
 }
 
-/// Returns the impacts of the motion, one for each pair, if they are few enough to be located; otherwise
-/// none.
+/// Returns the impacts of the motion, one for each pair, if the model has few moving parts and at most
+/// kMaxLocatedPairs pairs meet; otherwise none.
 PLIANT_INLINE std::vector<Contact> ContactStepping::impacts_to_locate(const Motion& motion) const {
   std::vector<Contact> impacts;
   if (!few_parts_) return impacts;
@@ -338,7 +343,8 @@ PLIANT_INLINE void ContactStepping::resolve_resting(const Motion& motion, StepCo
   clock.lap(times_.resolution);
 }
 
-/// Applies the impulses of an impact at the end of the motion, which was cut there.
+/// Resolves the resting contacts of the motion, which was cut at an impact, and then applies the impulses of
+/// this impact at the end of the motion.
 PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std::vector<Contact>& impacts,
                                                  Progress& progress) {
   const FreeMotion& free = motion.free;

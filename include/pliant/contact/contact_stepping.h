@@ -1,8 +1,8 @@
 // Steps of bodies that touch, around any method of integration. A step without contact is the step of the
 // method. An impact is located in time, and its impulses act at that time. At resting contacts, impulses
 // stand for forces that are constant over the step, so that resting and sticking bodies keep their
-// coordinates to rounding. If many impacts happen within one motion (the step or a part of it), they are
-// resolved together at its end (README.md of this folder).
+// coordinates to rounding. If many parts can move, or many impacts happen within one motion (the step or a
+// part of it), the impacts are resolved together at the end of the motion (README.md of this folder).
 #pragma once
 
 #include <vector>
@@ -19,25 +19,28 @@ namespace pliant {
 
 class ContactStepping {
  public:
-  /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder.
+  /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder and Sleeping.
   explicit ContactStepping(const Dynamics& dynamics);
 
   /// Begins a step, for which step() may be called several times, with an empty record. undo_step() replaces
   /// the record by that of the step before.
   void begin_step();
   void undo_step();
-  /// Advances q, v and work of step.state by state.h seconds, or less with to_event. Returns the length of
-  /// the step, s. The caller increments State::step. to_event: the step ends at the first located impact. In
-  /// models with few moving parts it also ends after a motion with resting contacts, or with contacts whose
-  /// time was not located.
+  /// Advances q, v, work, modes and contact cache of step.state by state.h seconds, or less with to_event.
+  /// Returns the length of the step, s. The caller increments State::step. to_event: the step ends at the
+  /// first impact that is located after its start. In models with few moving parts it also ends after a
+  /// motion with resting contacts, or with contacts whose time was not located.
   double step(Integrator& method, StepContext& step, bool to_event = false);
-  /// Repeats a step with resting contacts as two half steps, and extrapolates from both results (Richardson).
-  /// Impulses that stand for forces over a step have an error of O(h^2), which the difference of both results
-  /// estimates; the error of the extrapolation is O(h^3). If the step ended at an impact, the halves locate
-  /// the impact themselves and are not extrapolated. initial: the state at the start, with the length of the
-  /// step before any impact shortened it. length: the actual length of the step, s. impacts: the count of
-  /// impacts before the step. step.state: on input the state at the end of the step, on output that of the
-  /// halves.
+  /// Repeats a step with resting or unlocated contacts as two half steps. If both results agree in modes and
+  /// contacts and the error is at most 1, extrapolates from both (Richardson). Impulses that stand for forces
+  /// over a step have an error of O(h^2), which the difference of both results estimates; the error of the
+  /// extrapolation is O(h^3). If the step ended at an impact, the halves locate the impact themselves and are
+  /// not extrapolated. initial: the state at the start, with the length of the step before any impact
+  /// shortened it. length: the actual length of the step, s. impacts: the count of impacts before the step.
+  /// step.state: on input the state at the end of the step, on output that of the halves. Returns the larger
+  /// of two errors, in tolerances, and the length of the halves. The first is that of contact, the second
+  /// that of the method in the halves. If the bodies in contact were at rest and have no prescribed motion,
+  /// the error is 0 and the step is not repeated. If the halves fail, the error is infinite.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
                              const State& initial, double length, long impacts);
 
@@ -55,8 +58,8 @@ class ContactStepping {
   /// Returns whether the last step had resting contacts, or contacts whose time was not located: then the
   /// error estimate of the method does not include the error of contact.
   bool has_contact_error() const { return has_unlocated_ || !resting_at_start_.empty(); }
-  /// Returns whether step_by_doubling() is worth its cost: the model has few moving parts, and no contact is
-  /// at nodes of a mesh.
+  /// Returns whether step_by_doubling() is worth its cost: the model has few moving parts, and no contact of
+  /// the last step is at nodes of a mesh.
   bool may_double() const;
   /// Return the contacts and impulses of the last whole step; empty if nothing touched.
   const ContactRecord& record() const { return record_; }
@@ -93,7 +96,7 @@ class ContactStepping {
   struct Halves {
     double first = 0, length = 0;     ///< lengths of the first half and of both, s
     std::size_t first_contacts = 0;   ///< number of contacts that the first half resolved
-    VecX<double> gravity_velocities;  ///< n_v: velocities that gravity gives to parts that lost a contact
+    VecX<double> gravity_velocities;  ///< n_v: velocities by gravity of parts that lost a contact
     bool finite = false;
   };
   Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial);

@@ -10,8 +10,8 @@ struct FreeMotion {
   double begin = 0;  ///< time of the start, s
   double h = 0;      ///< length, s
   double reach = 0;  ///< a constant acceleration a displaces by reach * a * h^2 (Integrator::reach)
-  /// Impacts below this speed do not rebound, m/s. Rounding and gravity within a fraction of a step cause
-  /// such speeds.
+  /// An impact rebounds only if its rebound is faster than this, m/s. Rounding and gravity within a fraction
+  /// of a step cause slower impacts.
   double min_impact_speed = 0;
   /// Largest normal speed of a resting contact, m/s. It includes the residual of the last impulses
   /// (State::contact_residual).

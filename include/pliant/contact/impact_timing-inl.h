@@ -20,10 +20,13 @@ namespace impact_timing {
 /// The time of an impact is exact if the gap is at most kGapTolerance sizes of the smallest part, or if the
 /// time is known to kTimeTolerance of the motion.
 inline constexpr double kGapTolerance = 1e-13, kTimeTolerance = 1e-15;
+/// Largest number of trial times of each search.
 inline constexpr int kMaxTrials = 60;
-/// The sides of an impact are apart if their gap is larger than this, in sizes of the smallest part.
+/// The sides of an impact are apart at the start of the motion if their gap is larger than this, in sizes of
+/// the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
-/// Sides that touch at the start, and are not apart after 2^-kMaxHalvings of the motion, touch all the time.
+/// Sides whose gap is not positive at the start, and at none of the times h 2^-k for k from 1 to
+/// kMaxHalvings, touch all the time. h is the length of the motion.
 inline constexpr int kMaxHalvings = 20;
 /// Accuracy of the time on the dense output, as a share of the motion.
 inline constexpr double kPathTolerance = 1e-9;

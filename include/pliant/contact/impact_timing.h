@@ -20,15 +20,16 @@ inline void set_step(State& state, double t, double h) {
 }
 
 /// Returns the time from the start of the motion to the first of the impacts, s, and sets step.state to that
-/// time. Returns none if the sides of the impacts touch during the whole motion.
+/// time. Returns none if the sides of the impacts touch during the whole motion; step.state is then at the
+/// end of the motion.
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 
 /// Sets Contact::since of contacts at the end of a motion: the time since their sides met, s, at their
 /// present normal velocity, at most the length of the motion. If the sides do not overlap or do not approach,
-/// the time is force_time() of the motion. Sets Contact::rebound of overlapping sides that approached faster
-/// than motion.min_impact_speed already at the start of the motion. Contacts whose `since` is positive, the
-/// resting contacts, do not change.
+/// the time is force_time() of the motion. Sets Contact::rebound of overlapping sides that approach, and
+/// approached faster than motion.min_impact_speed already at the start of the motion, if the rebound is
+/// faster than this speed too. Contacts whose `since` is positive, the resting contacts, do not change.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

@@ -1,7 +1,7 @@
 // Movers: groups of velocities that contact impulses change together. A mover is
 // - a part without joints, or an island (parts that joints connect), with the velocities of
 //   body/constraint/group.h. If an impulse moves all local coordinates of a part (deformation by modes, or
-//   implicit elasticity), the rates of these coordinates follow the velocities of the mover;
+//   implicit elasticity), the mover also has the rates of these coordinates, after its other velocities;
 // - a node of any other part that deforms locally. Its mass is lumped, so an impulse on a node moves this
 //   node only. Its velocity is in the world frame.
 #pragma once

@@ -23,10 +23,11 @@ inline constexpr double kRestingGap = 1e-6;
 inline constexpr double kMaxWidening = 1000;
 /// If at most this share of the parts has moved, only these parts are searched again.
 inline constexpr double kFewMovedParts = 0.7;
-/// A contact at the end of a motion and one at its start are the same if their contact points are nearer than
-/// this, in sizes of the smaller part.
+/// A contact at the end of a motion and one of the same pair at its start are the same contact if their
+/// contact points are nearer than this, in sizes of the smaller part.
 inline constexpr double kSamePoint = 0.2;
-/// A motion has at most this share of the length in which a resting contact sinks by the allowed distance.
+/// A motion that is predicted or repeated has at most this share of the length in which a resting contact
+/// sinks by ContactFinder::max_resolved_depth.
 inline constexpr double kRepeatShare = 0.95;
 
 }  // namespace resting_contacts

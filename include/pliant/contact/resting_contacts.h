@@ -21,14 +21,15 @@ class RestingContacts {
   double gap() const { return widened(gap_); }
   /// Returns gap(contact) without the extra gap, m.
   double tight_gap(const Contact& contact) const;
-  /// Returns the contacts with a gap of at most gap() at a time t (s). Searches again only near parts that
-  /// have moved since the last call.
+  /// Returns the contacts with a gap of at most gap() at a time t (s). If t and the sleeping parts are those
+  /// of the last call and at most 70 % of the parts have moved since, it searches again only near these
+  /// parts.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Returns the resting contacts among near(): those that overlap by more than gap(contact), or whose normal
-  /// speed is at most max_speed (m/s).
+  /// Returns the resting contacts among near(): those that overlap by more than gap(contact), and those with
+  /// a gap of at most gap(contact) and a normal speed of at most max_speed (m/s).
   std::vector<Contact> at_rest(const State& state, double t, double max_speed);
-  /// Returns the longest motion (s) in which contacts that rest at the start sink by at most
-  /// ContactFinder::thin, if no impulse acts. state: the end of the motion.
+  /// Returns the longest motion (s), at most motion.h, in which contacts that rest at the start sink by at
+  /// most ContactFinder::max_resolved_depth, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
   /// Predicts the length of this longest motion (s) at the start of the motion, with gravity (m/s^2) as the
   /// only force.

@@ -21,7 +21,8 @@ namespace sleeping {
 /// units in the last place of the time. A change of a drive between both times belongs to both steps.
 inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
 
-/// Returns whether a vector changes within h seconds after t.
+/// Returns whether a vector changes within h seconds after t: whether its values at t, t + h / 2 and t + h
+/// differ.
 inline bool differs(const TimeVector& x, double t, double h) {
   const Vec3<double> now = x.value(t);
   return x.value(t + h) != now || x.value(t + 0.5 * h) != now;
@@ -32,7 +33,8 @@ inline bool differs(const TimeVector& x, double t, double h) {
 inline bool is_prescribed(const Point& point) {
   return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
 }
-/// Returns whether the prescribed motion of a part moves or rotates the part within h seconds after t.
+/// Returns whether the prescribed motion of a part moves or rotates the part within h seconds after t; the
+/// poses at t, t + h / 2 and t + h are compared.
 inline bool moves(const Part& part, double t, double h) {
   const PrescribedMotion* motion = part.motion();
   if (motion == nullptr) return false;
@@ -197,7 +199,8 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
 }
 
 /// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity is
-/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger.
+/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger. The largest
+/// rate of a local displacement is added.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());

@@ -17,9 +17,9 @@ class Sleeping {
   /// All arguments must outlive this object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or whose drive
-  /// changes in the motion, with all parts that sleep with them. Stores the coordinates if any part
-  /// still sleeps.
+  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or for which a
+  /// Drive (below) changes in the motion, with all parts that sleep with them. Stores the coordinates if any
+  /// part still sleeps.
   void begin_motion(double t, double h, State& state);
   /// Ends the motion: restores the coordinates of sleeping parts.
   void restore(State& state) const;
@@ -28,11 +28,12 @@ class Sleeping {
   bool touches_sleeping(const std::vector<Contact>& contacts, const State& state) const;
   /// Wakes the parts at the contacts, with all parts that sleep with them.
   void wake_touched(const std::vector<Contact>& contacts, State& state) const;
-  /// Wakes parts that impulses have moved since begin_motion().
+  /// Wakes sleeping parts whose coordinates or velocities impulses have changed since begin_motion().
   void wake_moved(State& state) const;
   /// Ends a step of h seconds from time t (s) with these contacts: lets parts fall asleep if they, and all
-  /// parts that they touch or are connected to, have been at rest for long enough. Their kinetic energy goes
-  /// to Work::contact.
+  /// parts that they touch or are connected to, have been at rest for long enough. They stay awake if a Drive
+  /// of one of these parts changes in the step, or if a part or plane with prescribed motion touches them.
+  /// Their velocities become zero; Work::contact receives the change of energy.
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
   /// Returns whether any part sleeps in this motion.

@@ -22,20 +22,20 @@ namespace pliant {
 namespace step_doubling {
 
 /// Bodies in contact whose state changes by at most this in a step, in tolerances, are at rest: the error of
-/// the step is zero.
+/// the step is zero. Bodies with prescribed motion (has_prescribed_motion()) are an exception.
 inline constexpr double kAtRestTolerance = 1e-2;
 
 /// The whole step and its halves resolve an impact, or a change of contact points, at different times. If one
 /// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
-/// A difference is a jump if it exceeds this multiple of the speed that gravity gives a body in the step.
-/// Then the error is measured by the displacement that the jump causes in the step, if the step is no longer
-/// than longest_contact_step() with the default settings.
+/// A difference is a jump if the results do not agree (agree()) and it exceeds this multiple of the speed
+/// that gravity gives a body in the step. Then the error is measured by the displacement that the jump causes
+/// in the step, if the step is no longer than longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
-/// Returns whether the velocity of a part differs by more than max_speed, m/s. dv: differences of the
-/// velocities of all parts.
+/// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more
+/// than max_speed, m/s. dv: differences of the velocities of all parts.
 inline bool has_jump(const Model& model, const VecX<double>& dv, double max_speed) {
   return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
     return m.q0 >= 0 &&
@@ -43,9 +43,9 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
   });
 }
 
-/// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact, and zero for
-/// other parts; n_v numbers. before: contacts that rested in the whole step; now: contacts that its first
-/// half has resolved. t: time, s.
+/// Returns the acceleration by gravity, m/s^2, of the parts that have lost all contacts with a body on which
+/// they rested, and zero for other parts; n_v numbers. before: contacts that rested in the whole step; now:
+/// contacts that its first half has resolved. t: time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
                                        double t) {
@@ -62,8 +62,8 @@ inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts
   return gravity;
 }
 
-/// Returns whether a body at a contact, or a joint of such a body, has prescribed motion. Such bodies may
-/// have moved during a step although they are at the same place at both ends.
+/// Returns whether a body at a contact, or a joint in the island of such a body, has prescribed motion. Such
+/// bodies may have moved during a step although they are at the same place at both ends.
 inline bool has_prescribed_motion(const Model& model, const std::vector<Contact>& contacts) {
   auto moves = [&](const ContactSide& side) {
     return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
@@ -161,8 +161,9 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   return halves;
 }
 
-/// Returns whether the whole step and its halves have equal modes of joints, limits and sleep, and equal
-/// numbers of contacts. has_impact: whether the halves ended at an impact.
+/// Returns whether the whole step and its halves have equal lengths, modes of joints, limits and sleep, and
+/// numbers of contacts, and whether both or neither ended at an impact. If they did, neither their lengths
+/// nor the contacts of the first half are compared. has_impact: whether the halves ended at an impact.
 PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_impact,
                                           const State& state) const {
   return halves.first == 0.5 * whole.length && has_impact == whole.has_impact &&
@@ -172,7 +173,8 @@ PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halv
          (whole.has_impact || halves.first_contacts == whole.contacts);
 }
 
-/// Returns the difference between the whole step and its halves, in tolerances.
+/// Returns the difference between the whole step and its halves, or the error by contacts that the first half
+/// has lost, whichever is larger, in tolerances.
 PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halves& halves, bool agreed,
                                                  const ErrorScale& scale, double start,
                                                  const State& state) const {
@@ -199,8 +201,8 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halve
   return std::max(end_error, loss_error);
 }
 
-/// Extrapolates the state at the end of the two halves by Richardson. whole: the state at the end of the
-/// whole step. second: number of the first contact of the second half in the record.
+/// Extrapolates the state of the parts in contact, at the end of the two halves, by Richardson. whole: the
+/// state at the end of the whole step. second: number of the first contact of the second half in the record.
 PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second) {
   const Model& model = dynamics_.model();
   State& state = step.state;

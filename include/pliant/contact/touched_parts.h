@@ -12,8 +12,9 @@ std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& c
 /// Returns whether a joint in the islands of some parts follows a prescribed path.
 bool are_driven(const Model& model, const std::vector<int>& parts);
 /// Evaluates the quantities that ContactProblem needs at a state and a time t (s), and stores them in work:
-/// masses and joint factors of the touched parts, except of parts that are moved node by node. For such a
-/// part that is touched as a whole, also the response of its joints (LocalDeformation::compliance).
+/// masses of touched parts without joints, and masses and joint factors of touched islands. A part that is
+/// touched at its nodes and moves by nodes (moves_by_nodes) is left out. If a part without joints moves by
+/// nodes but is touched as a whole, its matrix A = M^-1 (LocalDeformation::compliance) is computed too.
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work);
 /// Applies a solution to a state: sets the velocities after the impulses, and adds the displacements. work:

@@ -125,7 +125,8 @@ inline constexpr double kError5[] = {0.1312004499419488073250102996e-1,
                                      0.3341791187130174790297318841,
                                      0.8192320648511571246570742613e-1,
                                      -0.2235530786388629525884427845e-1};
-// Dense output: rows of the three additional stages, at the fractions 0.1, 0.2 and 7/9 of the step.
+// Dense output: the weights of the three additional stages, row by row. These stages are at the fractions
+// 0.1, 0.2 and 7/9 of the step.
 inline constexpr double kExtensionA[] = {5.61675022830479523392909219681e-2,
                                          0,
                                          0,

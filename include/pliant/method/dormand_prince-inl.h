@@ -15,7 +15,8 @@ inline constexpr double kA[] = {1. / 5,       3. / 40,       9. / 40,        44.
                                 9017. / 3168, -355. / 33,    46732. / 5247,  49. / 176,     -5103. / 18656};
 inline constexpr double kB[] = {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84};
 inline constexpr double kC[] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1};
-// b minus the weights of the embedded method of order 4, which uses the rates at the end of the step.
+// b minus the weights of the embedded method of order 4. The last entry is for the rates at the end of the
+// step.
 inline constexpr double kError[] = {71. / 57600,      0,         -71. / 16695, 71. / 1920,
                                     -17253. / 339200, 22. / 525, -1. / 40};
 inline constexpr double kExtensionD[] = {-12715105075. / 11282082432,  0,

@@ -1,7 +1,8 @@
 // The ESDIRK method of order 4 by Kennedy and Carpenter (Appl. Numer. Math. 44, 2003: the implicit part of
 // ARK4(3)6L[2]SA), on (q, v, work): singly diagonally implicit, explicit first stage, L-stable, stiffly
-// accurate. Closed joints are projected after the step. An embedded method of order 3 estimates the error.
-// All stages share one matrix, which is formed only if the motion is stiff.
+// accurate. Limits, strings and closed joints are projected after the step. An embedded method of order 3
+// estimates the error. The implicit stages share one matrix, which is formed only if the motion is stiff, and
+// formed again if a stage does not converge with it.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,8 @@ class Esdirk final : public Integrator {
   const char* name() const override { return "esdirk"; }
   int order() const override { return 4; }
   int error_order() const override { return 3; }
-  /// Throws NumericalFailure if the iteration of a stage does not converge.
+  /// Throws NumericalFailure if the iteration of a stage does not converge, or if a matrix would be too large
+  /// (StageSolver::solve).
   void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 

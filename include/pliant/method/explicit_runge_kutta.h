@@ -1,8 +1,8 @@
 // Explicit Runge-Kutta methods with an error estimate (Hairer, Norsett & Wanner, Solving Ordinary
 // Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers by
-// theta_dot = 1/2 theta o (0, omega) and normalised after the step; closed joints are projected. The
-// normalisation and the projection keep the order. Free oscillators (free_oscillation.h) are integrated
-// exactly.
+// theta_dot = 1/2 theta o (0, omega) and normalised after the step; limits, strings and closed joints are
+// projected. The normalisation and the projection keep the order. Free oscillators (free_oscillation.h) are
+// integrated exactly.
 #pragma once
 
 #include <vector>
@@ -47,7 +47,8 @@ class ExplicitRungeKutta : public Integrator {
   // for the end of the step, and one for each additional stage of the dense output.
   MatX<double> q_rates_, v_rates_, powers_;
   VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;
-  // State and time of the rates at the end of the last step, which are the first stage of the next step.
+  // State and time of the rates at the end of the last step, if its error estimate has evaluated them
+  // (ButcherTableau::rates_at_end). They are then the first stage of the next step.
   State last_;
   double last_t_ = 0;
   Workspace<double> extension_work_;  ///< evaluations of the dense output

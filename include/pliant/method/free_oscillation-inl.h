@@ -16,7 +16,8 @@ namespace pliant {
 namespace free_oscillation {
 
 /// The functions c and s of exp(A t): with kappa = sqrt(omega^2 - g^2), c = e^(-g t) cos(kappa t) and s =
-/// e^(-g t) sin(kappa t) / kappa. An overdamped decay has cosh and sinh in their place.
+/// e^(-g t) sin(kappa t) / kappa. For overdamped motion (g > omega), kappa = sqrt(g^2 - omega^2), and cosh
+/// and sinh replace cos and sin.
 struct DampedCosSin {
   double c, s;
 };

@@ -1,6 +1,6 @@
 // Stages of an explicit Runge-Kutta method for free oscillators (free_oscillation.h): an exponential
-// integrator (Lawson 1967, Krogstad 2005). With u = (q, v), u_dot = A u + (0, n), A = [0, I; -omega^2, -D]
-// and the load n_j at stage j,
+// integrator (Lawson 1967, Krogstad 2005). With u = (q, v), u_dot = A u + (0, n), A = [0, I; -omega^2, -D],
+// the load n_j at stage j, and the nodes c_i and weights a_ij of the tableau, stage i is
 //   u_i = exp(A c_i h) u_0 + int_0^(c_i h) exp(A t) (0, n_0) dt
 //         + h sum_j a_ij exp(A (c_i - c_j) h) (0, n_j - n_0)
 // For the end of the step the weights b replace a_ij, and for the error estimate those of the estimate. The

@@ -18,7 +18,8 @@ class ImplicitMidpoint final : public Integrator {
   ~ImplicitMidpoint() override;
   const char* name() const override { return "implicit_midpoint"; }
   int order() const override { return 2; }
-  /// Throws NumericalFailure if the iteration of the step does not converge.
+  /// Throws NumericalFailure if the iteration of the step does not converge, or if a matrix would be too
+  /// large (StageSolver::solve).
   void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 

@@ -47,11 +47,12 @@ class LinearlyImplicit final : public Integrator {
   const ImplicitParts& implicit_parts() const {
     return first_order_ ? first_order_parts_ : second_order_parts_;
   }
-  /// Prepares the implicit parts for the filters of a step from the evaluation in step.work; creates them at
-  /// the first call. c: gamma h, s.
+  /// Prepares the implicit parts for the calls of filter() in a step from the evaluation in step.work;
+  /// creates them at the first call. c: gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
   /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v so that the
-  /// rows of joints keep their values (implicit/project_rates.h).
+  /// rows of joints, of strings that pull and of limits that push keep their values
+  /// (implicit/project_rates.h).
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
   /// Advances one step of ROS2, from the evaluation to the projection.

@@ -1,9 +1,9 @@
 // Semi-implicit Euler, the method of the paper (section 4, after Eq. (14)), of first order:
 //   v <- v + h v_dot(t, q, v),   q <- q (+) h v
-// (+) adds positions and parameters, and turns rotations by the exponential map. Free oscillators
-// (free_oscillation.h) are integrated exactly. The gyroscopic term acts as an exact rotation of angular
-// momenta (carry_momenta.h): integrated to first order in h, this term would let tumbling parts gain energy
-// without bound.
+// (+) adds positions, parameters and local coordinates, and turns rotations by the exponential map. Free
+// oscillators (free_oscillation.h) are integrated exactly. The gyroscopic term acts as an exact rotation of
+// angular momenta (carry_momenta.h): integrated to first order in h, this term would let tumbling parts gain
+// energy without bound.
 #pragma once
 
 #include <pliant/method/free_stages.h>

@@ -1,10 +1,10 @@
-// The matrix A of a part with nodes: linearised elasticity and damping under the reference conditions W^T d =
-// 0 (include/pliant/part/local/README.md), with W = M G and G = [I, -[s]x, J] at the nodes. H0 is the mass
-// matrix of v_r (below) at d = 0. D_r and K_r are its damping and stiffness, which are zero except for q_s. K
-// is the stiffness over the local coordinates without its dense term w w^T (NodalEnergy::rank_one). K_p is
-// the share of K of energies that depend on positions (NodalEnergy::Of::position). Let r_q, r_v be the given
-// rates, k_q = r_q + c k_v, and v_r = (R^T c_dot, omega, q_s_dot). The changes k_v - r_v are x_d for the
-// local coordinates and x_r for v_r:
+// The matrix A of (I - c A) k = r (implicit_part.h) for a part with nodes: linearised elasticity and damping
+// under the reference conditions W^T d = 0 (include/pliant/part/local/README.md), with W = M G and G = [I,
+// -[s]x, J] at the nodes. H0 is the mass matrix of v_r (below) at d = 0. D_r and K_r are its damping and
+// stiffness, which are zero except for q_s. K is the stiffness over the local coordinates without its dense
+// term w w^T (NodalEnergy::rank_one). K_p is the share of K of energies that depend on positions
+// (NodalEnergy::Of::position). Let r_q, r_v be the given rates, k_q = r_q + c k_v, and v_r = (R^T c_dot,
+// omega, q_s_dot). The changes k_v - r_v are x_d for the local coordinates and x_r for v_r:
 //   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - ((c^2 + c beta) K + c^2 w w^T) e - P e_r ]
 //   [ W^T      0             ] [ kappa ] = [ 0                                                         ]
 //   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r e_r - c^2 P^T e                          ]

@@ -33,7 +33,7 @@ inline constexpr int kMaxMatrices = 4;
 /// Changes that do not shrink and are at most this, in sizes of the part and radians, are rounding.
 inline constexpr double kRounding = 1e-12;
 /// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
-/// lengths, 1 for others.
+/// lengths and local coordinates, 1 for angles and other parameters.
 inline constexpr double kDifference = 1e-7;
 /// Largest number of velocities of a cluster, whose matrix is dense.
 inline constexpr Eigen::Index kMaxClusterVelocities = 1000;

@@ -2,11 +2,11 @@
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
 // for Q and V, by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II,
 // section IV.8). r_q and r_v are known from the earlier stages. The matrix is I - c A_v - c^2 A_q, with the
-// derivatives A_q and A_v of v_dot by q and v. A_q and A_v are computed by difference quotients, once in a
-// step, and only if the iteration without the matrix would cost more. They are computed again if stiff parts
-// turn so far that the iteration with the matrix does not converge. Each cluster of parts that joints,
-// springs or mutual torques connect has one matrix, in the frames of the parts, because stiff directions turn
-// with the parts.
+// derivatives A_q and A_v of v_dot by q and v. A_q and A_v are computed by difference quotients, as a rule at
+// most once in a step, and only if the iteration without the matrix would cost more. They are computed again
+// if stiff parts turn so far that the iteration with the matrix does not converge. Each cluster of parts that
+// joints, springs or mutual torques connect has one matrix, in the frames of the parts, because stiff
+// directions turn with the parts.
 #pragma once
 
 #include <string>
@@ -27,7 +27,8 @@ class StageSolver {
   void begin_step(StepContext& step, double c, const ErrorScale& scale);
   /// Solves the stage at time t (s) for q and v, whose values before the call are the first guess. On return
   /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
-  /// changes most, if the iteration does not converge.
+  /// changes most, if the iteration does not converge. Throws NumericalFailure, with the first part, if a
+  /// cluster has too many velocities for a matrix.
   void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// Multiplies an error estimate by the inverse matrix, so that components that the step damps away vanish.
   /// Without a matrix the estimate does not change.
@@ -37,12 +38,12 @@ class StageSolver {
   /// Parts whose states affect the accelerations of each other.
   struct Cluster {
     std::vector<int> parts;
-    std::vector<Eigen::Index> velocities;
+    std::vector<Eigen::Index> velocities;  ///< indices of the velocities of these parts in v
     MatX<double> A_q, A_v;
     Eigen::PartialPivLU<MatX<double>> factor;
   };
-  /// Iterates until q and v have converged, or until a new matrix is expected to be cheaper. Returns whether
-  /// the iteration converged.
+  /// Iterates until q and v have converged, at most a fixed number of times, or until a new matrix is
+  /// expected to be cheaper. Returns whether the iteration converged.
   bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// Evaluates A_q and A_v of each cluster at (t, q, v) by difference quotients, and factors its matrix.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
