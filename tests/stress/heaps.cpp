@@ -195,9 +195,7 @@ TEST_CASE("N55: a poured heap comes to rest without penetration", "[contact][lon
 }
 
 TEST_CASE(
-    "N55: five thousand contacts need bounded memory, and the time grows almost in proportion to the number "
-    "of "
-    "balls",
+    "N55: memory for five thousand contacts is bounded, and time grows almost in proportion to their number",
     "[contact][long]") {
   MultiBody few, many;
   pack(few, 7);
