@@ -3,8 +3,8 @@
 //   assembly_bench [FOLDER] [LAYOUTS]     writes assembly_bench.csv to FOLDER and a table to standard output
 //
 // A layout is a tree of ellipsoids on ball joints; the first ellipsoid is connected to the world. Their
-// poses are random, within a cube whose half side is a given number of body lengths. Some layouts have one
-// more joint for every four parts. These joints close loops, and it may be impossible to satisfy them.
+// poses are random, within a cube whose half side is a given number of body lengths. Some layouts have up to
+// one more joint for every four parts. These joints close loops, and it may be impossible to satisfy them.
 // LAYOUTS: number of layouts of each kind (1000). For 100 parts there are a tenth as many.
 #include <algorithm>
 #include <chrono>

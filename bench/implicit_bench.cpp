@@ -1,8 +1,8 @@
-// The linearly implicit method on solids. One table has the time of a step, beside that of a step of RK4 and
-// of one evaluation of the accelerations, and the time of the factorisation of its matrix, for each law, size
-// and kind of factorisation. The other table has
-// processor time against error for a stiff solid that swings on a joint: RK4 at 0.9 of its largest stable
-// step, and the implicit method at 1 to 1000 times this largest step. Writes CSV to standard output.
+// The linearly implicit method on solids. One table has, for each law, size and kind of factorisation, the
+// times of a step and of the factorisation of its matrix. For comparison it has the times of a step of RK4
+// and of one evaluation of the accelerations. The other table has processor time against error for stiff
+// solids that swing on a joint: RK4 at 0.9 of its largest stable step, and the implicit method at 1 to 1000
+// times this largest step. Writes CSV to standard output.
 //
 //   implicit_bench [FOLDER]     writes implicit_cost.csv and implicit_work_error.csv to FOLDER as well
 #include <chrono>

@@ -1,5 +1,6 @@
 // The problems on which integration methods are compared, in SI units. Bodies are solid with a density of
-// 1000 kg/m^3, and gravity is 9.81 m/s^2 along -z, unless stated otherwise.
+// 1000 kg/m^3, and gravity is 9.81 m/s^2 along -z. Exceptions: A, dust, solid and assembly have no gravity,
+// balloons are shells of 1 kg/m^2, and each rod of four-bars has a mass of 1 kg.
 //
 //   A          free ellipsoid with semi-axes 0.3, 0.2, 0.1 m that spins about its unstable axis
 //   B          the ellipsoid of A, suspended at the tip of its long axis, with a sideways initial velocity
@@ -9,7 +10,7 @@
 //   solid      free tumbling superellipsoid whose semi-axes, taper, twist and bend are elastic
 //   four-bars  row of 40 four-bar linkages ("windows") of rods on hinges, which rotate (IFToMM A02)
 //   assembly   five ellipsoids with elastic semi-axes, initially apart; their joints close (Baumgarte)
-//   ringing    free tumbling balloon of 432 triangles that vibrates
+//   ringing    tumbling balloon of 432 triangles that vibrates while it falls
 //   stiff      the balloon of ringing, suspended at its top by a ball joint, 1000 times as stiff, damped
 //   bounce     ball that rebounds from a plane with restitution 0.8, in air with drag
 //   see-saw    ball that falls onto one end of a board on a pivot and throws up another ball

@@ -2,8 +2,8 @@
 // frame. Prints one CSV row for each picture size, with the times of drawing, of writing the PNG, and of
 // both. The target for 640x480 with PNG is 45 ms (two raster threads).
 //
-//   render_bench [FRAMES] [FOLDER]     FRAMES: number of frames of 640x480 (40); FOLDER: receives the last
-//   picture of each size (the system's temporary folder)
+//   render_bench [FRAMES] [FOLDER]     FRAMES: number of frames of 640x480 (40), four times that of
+//   1920x1080; FOLDER: receives the last picture of each size (the system's temporary folder)
 #include <algorithm>
 #include <chrono>
 #include <cmath>

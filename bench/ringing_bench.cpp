@@ -2,14 +2,14 @@
 // with its lowest torsional mode T2 at 24.68711 Hz and its lowest spheroidal mode S2 at 26.11917 Hz (Lamb
 // 1882), and a closed membrane of the same radius and material, 1 mm thick, with the lowest modes n = 2 at
 // 11.695 Hz (Lamb 1882). Higher modes of the membrane are not measured, because on a mesh they are mixed with
-// modes of short waves. For each basis, the table has the processor time of a period of the lowest mode and
-// the relative errors of the frequencies. Steps of nodes are 0.9 times the largest stable step. Modes and
-// polynomials take three steps per period, which are exact. The error of nodes is the error of the frequency
-// of the mesh plus that of the method of integration. The error of the mesh is measured with the basis of
-// modes. For order 2 the listed error of the basis of nodes is therefore too large. Its elements of 15 nodes
-// are more accurate than the elements of 10 nodes that modes use. Writes CSV to standard output, and then the
-// time of each basis at given errors of the lower mode and of both modes. An entry is "not reached" if no row
-// has at most the given error.
+// modes of short waves. For each basis, the table has the processor time for a simulated period of the lowest
+// mode and the relative errors of the frequencies. With the basis "nodes", the step is 0.9 times the largest
+// stable step. With modes and polynomials there are three steps per period, and these are exact. The error of
+// the basis "nodes" is the error of the frequency of the mesh plus that of the method of integration. The
+// frequency of the mesh is that of the basis "modes". For order 2 this overestimates the error: the basis
+// "modes" uses elements of 10 nodes, and the basis "nodes" uses elements of 15 nodes, which are more
+// accurate. Writes CSV to standard output, and then the time of each basis at given errors of the lower mode
+// and of both modes. An entry is "not reached" if no row has at most the given error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>
@@ -124,9 +124,9 @@ class Bench {
     std::fputs(head().c_str(), stdout);
   }
 
-  /// Measures a case with both methods of integration. mesh_frequencies: for nodes, the frequencies of the
-  /// modes of the same mesh, Hz. Returns the frequencies of the modes of the case, Hz; for nodes,
-  /// mesh_frequencies.
+  /// Measures a case with both methods of integration. mesh_frequencies: for the basis "nodes", the
+  /// frequencies of the modes of the same mesh, Hz; not used otherwise. Returns the frequencies of the modes
+  /// of the case, Hz; for the basis "nodes", mesh_frequencies.
   std::vector<double> measure(const Case& measured, std::vector<double> mesh_frequencies = {}) {
     const std::vector<Mode> exact = measured.shell ? membrane_modes() : lamb_modes();
     MultiBody body;

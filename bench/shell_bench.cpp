@@ -1,8 +1,8 @@
 // Time per triangle of a force evaluation for each shell energy, on spheres. Writes CSV to standard output.
 // Further columns are the multiply-adds (the larger of the numbers of products and sums) and the bytes of an
 // evaluation, counted from the formulas. The last columns are the shares that the evaluation reaches of two
-// speeds, both measured in this run: the multiply-add peak of this machine, and the bandwidth of a triad
-// over as many bytes (in the same cache).
+// speeds, both measured in this run: the multiply-add peak, and the bandwidth of a triad (a =
+// b + s c) over arrays of as many bytes in total (in the same cache).
 //
 //   shell_bench [FOLDER]     also writes shell_bench.csv to FOLDER
 #include <cmath>

@@ -2,8 +2,8 @@
 // CSV to standard output, after a comment about the columns. Operations are counted by evaluating the
 // formulas of an element with a counting number type. Bytes are those that pass through memory if caches do
 // not retain data: constants of the quadrature points, node numbers, forces written and read back,
-// coordinates and forces once for each node. The bandwidth is that of a triad over as many bytes, in the same
-// cache.
+// coordinates and forces once for each node. The bandwidth is that of a triad (a = b + s c) over arrays of as
+// many bytes in total, in the same cache.
 //
 //   solid_bench [FOLDER]     also writes solid_bench.csv to FOLDER
 #include <cstdio>

@@ -19,7 +19,7 @@
 // halves the step. The others start with the tolerance 0.1; each further setting divides it by ten.
 // linearly_implicit is measured with fixed steps, and with tolerances as linearly_implicit_controlled. A
 // method is measured with at least six settings that succeed. After them, the measurement stops if a run
-// exceeds the time limit, or if the error is below the resolution of the reference.
+// exceeds the time limit, or if the error is below 1e-11 or below the resolution of the reference.
 //
 // error: error at the end, of the positions of the bodies divided by their length, or of all coordinates
 // (error_scale.h). error_along: the maximum of this error at eight times, in a run that stops at each of
@@ -213,7 +213,8 @@ bool is_smooth(const Problem& problem) {
 }
 
 /// Runs with the first of the tolerances finest, 10 finest, 100 finest, ... at which the method succeeds.
-/// Rounding errors make it fail at finer ones.
+/// Rounding errors make it fail at finer ones. Throws StepFailure if it also fails at the first tolerance
+/// above 1e-9.
 Outcome run_at_finest_tolerance(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {

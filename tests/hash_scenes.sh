@@ -1,8 +1,9 @@
 #!/bin/bash
-# Prints a hash of the states of every shipped scene at the time END: bash tests/hash_scenes.sh PROGRAM [END] [FOLDER].
-# PROGRAM: path of a built pliant; END: simulated time, s (default: 1); FOLDER: folder of the scenes (default: scenes/). Each line has
-# the scene, the exit code and the SHA-256 of q.npy and v.npy. A change that keeps behaviour keeps all lines, on one
-# machine and with one compiler:
+# Prints a hash of the recorded states of every shipped scene, from the start to END:
+#   bash tests/hash_scenes.sh PROGRAM [END] [FOLDER]
+# PROGRAM: path of a built pliant; END: simulated time, s (default: 1); FOLDER: folder of the scenes (default: scenes/).
+# Each line has the scene, the exit code, and one SHA-256 of q.npy and v.npy together. A change that keeps behaviour
+# keeps all lines, on one machine and with one compiler:
 #   diff <(bash tests/hash_scenes.sh OLD/pliant) <(bash tests/hash_scenes.sh build/release/apps/pliant)
 set -euo pipefail
 program=$(realpath "$1")

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds everything and runs all tests, from a bare Debian machine: installs missing packages first. Arguments go to ctest
-# (for example: -R dual, -LE long). Ends with status 4 if packages are missing and cannot be installed.
+# (for example: -R contact, -LE long). Ends with status 4 if packages are missing and cannot be installed.
 set -eu
 cd "$(dirname "$0")/.."
 . apps/setup.sh

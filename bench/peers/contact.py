@@ -33,7 +33,7 @@ THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
 # balloon, count, duration in s, numbers of triangles
 BALLOONS = {"drop": (FIRM, 1, 0.5, [320, 1280, 5120]), "nine on strings": (THIN, 9, 1, [320]),
             "nine firm ones on strings": (FIRM, 9, 1, [320])}
-MAX_SECONDS = 60  # a configuration is not repeated after this CPU time, s
+MAX_SECONDS = 60  # a configuration is not repeated if its runs so far took more CPU time than this, s
 
 
 def ellipsoids(count, layers):
@@ -141,7 +141,7 @@ def drake_ellipsoids(bodies):
 
 
 def rigid_run(make, count, layers):
-    """Returns (CPU s, largest depth in m). Throws if the ellipsoids are not on the plane at the end."""
+    """Returns (CPU s, largest depth in m). Raises RuntimeError if the ellipsoids are not on the plane at the end."""
     advance, deepest, heights = make(ellipsoids(count, layers))
     seconds, max_depth = 0, 0
     for _ in range(round(DURATION / STEP / SAMPLED)):

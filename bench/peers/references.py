@@ -3,7 +3,7 @@
 
 usage: references.py OUT.csv [JOINT_REFERENCE.csv]
 
-A: Taylor series with 25 digits. The others: exact multipliers (multipliers_peer.py) with two tolerances. Columns:
+A: Taylor series with 20 and with 25 digits. The others: exact multipliers (multipliers_peer.py) with two tolerances. Columns:
 reference_difference: difference of the two methods that compute the reference; second_difference: difference between
 the two runs of the second method; agreement: difference between the reference and the second method. All differences
 are computed by errors.error().

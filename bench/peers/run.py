@@ -28,7 +28,7 @@ COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per
 # The settings of a method, from coarse to fine, are its ladder. A ladder ends after
 # - an error below SMALLEST,
 # - STALLED successive runs below ROUNDING without an improvement of the smallest error of the ladder,
-# - FAILURES failed runs, or a failed run more than 4 times the time limit after the start of the ladder,
+# - FAILURES failed runs, or a failed run that ends later than 4 times the time limit after the start of the ladder,
 # - a run that crashed or was killed,
 # - a run of more than half the time limit, or
 # - a run of more than a 16th of the limit that is DOMINATED times slower than a run whose error is not larger.

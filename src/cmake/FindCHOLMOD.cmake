@@ -1,7 +1,7 @@
 # CHOLMOD, the sparse Cholesky factorisation of SuiteSparse, as the target SuiteSparse::CHOLMOD. SuiteSparse 7 and later
 # install CMake config files. Older versions (Debian 12) install neither config files nor pkg-config files; their header
-# and library are searched for. Sets CHOLMOD_FOUND, CHOLMOD_VERSION and CHOLMOD_SUITESPARSE_VERSION, both read from the
-# headers.
+# and library are searched for. Sets CHOLMOD_FOUND, CHOLMOD_VERSION and CHOLMOD_SUITESPARSE_VERSION. The two versions
+# are read from the headers.
 include(FindPackageHandleStandardArgs)
 
 find_package(CHOLMOD CONFIG QUIET)

@@ -1,5 +1,5 @@
-// The energy ledger of forced motion: each source of work alone, and all together. The balance error falls at
-// the order of the method.
+// The energy ledger of forced motion: each source of work alone, and most of them together. The balance error
+// falls at the order of the method.
 #include "catch.h"
 
 #include <functional>
@@ -112,7 +112,7 @@ TEST_CASE("N33: the ledger with point forces and torques in both frames, and a u
     body.torque("spin", a, TimeVector(0, 2, test::wave(0, 4, 5)), Frame::body);
   });
 }
-TEST_CASE("N33: the ledger with all loads at once", "[forced][long]") {
+TEST_CASE("N33: the ledger with most kinds of load at once", "[forced][long]") {
   check_orders("all", [](MultiBody& body, Part& a, Part& b) {
     body.gravity = {0.5, 0, -9.81};
     a.damping(0.3, 0.002, 0.2).rest("bend.angle", test::wave(0.4, 0.2, 5));

@@ -14,7 +14,8 @@ using namespace pliant;
 
 namespace {
 
-/// A solid that tumbles, with polynomial modes that may oscillate, and with three dynamic parameters or none.
+/// Adds a tumbling solid with polynomial modes. parameters: whether three of its parameters are dynamic.
+/// ringing: whether its modes oscillate from the start.
 void tumbling(MultiBody& body, double E, double beta, bool parameters, bool ringing = true) {
   body.gravity.setZero();
   auto& part = body.add(make_part("soft", "superellipsoid", {"taper", "twist"}, 20));

@@ -39,7 +39,7 @@ struct Soft {
   std::vector<Law> laws;
   bool shell = false;
   bool parameters = false;         ///< whether its axes are dynamic
-  double alpha = 0, beta = 0;      ///< damping coefficients of the nodes
+  double alpha = 0, beta = 0;      ///< damping coefficients of the nodes and of the dynamic axes
   double displacement_factor = 0;  ///< factors of the sample displacement and velocity at time 0
   double velocity_factor = 0.5;
   int resolution = 2;
@@ -436,7 +436,8 @@ TEST_CASE(
   for (int i = 0; i < 10; ++i) simulation.step(1e-3);
   CHECK(simulation.step_counters().factorisations == 3);
 
-  // The coupling to parameters, springs and other parts uses small matrices of its own.
+  // The coupling to parameters, springs and other parts uses additional small matrices, which do not count as
+  // factorisations.
   for (const bool parameters : {false, true}) {
     Soft soft = solid("elastic", 1000);
     soft.parameters = parameters;

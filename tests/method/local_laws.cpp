@@ -1,4 +1,5 @@
-// Every law of local deformation in free flight: order 4, and conservation of energy and momenta.
+// Every law of local deformation: energy balance and momenta in free flight, damping, and the largest stable
+// step.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>
@@ -53,8 +54,8 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
 }  // namespace
 
 TEST_CASE(
-    "every law of local deformation conserves energy, momentum and angular momentum at order 4, with and "
-    "without damping",
+    "under every law of local deformation, damped or not, the energy balance is of order 4 and momenta are "
+    "conserved",
     "[local][motion][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const double beta : {0.0, 1e-4}) {

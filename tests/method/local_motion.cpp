@@ -361,11 +361,11 @@ TEST_CASE("dust: every node of a spinning shell without elasticity moves on a st
 namespace {
 
 struct Twisted {
-  double lowest = 3, highest = -3;
+  double lowest = 3, highest = -3;  ///< smallest and largest twist, rad
   double condition = 0;  ///< the largest condition number of the separation of twist and nodal motion
-  double balance = 0;    ///< relative to the energy at the start
+  double balance = 0;    ///< error of the energy balance / energy at the start
 };
-/// Runs a tube whose only parameter is its twist, and returns the range of the twist.
+/// Simulates a tube whose only parameter is its twist.
 Twisted twist(MultiBody& body, double h, int steps) {
   Simulation simulation(body, "rk4");
   const double start = simulation.ledger().energy();
@@ -385,8 +385,9 @@ Twisted twist(MultiBody& body, double h, int steps) {
 
 }  // namespace
 
-TEST_CASE("a shell twists by 2.5 rad per half length, and the conditions still separate its coordinates",
-          "[local][long]") {
+TEST_CASE(
+    "a shell twists by 2.5 rad per half length, and the reference conditions still separate its coordinates",
+    "[local][long]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add(make_part("tube", "cylinder", {"twist"}, 2));

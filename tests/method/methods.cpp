@@ -281,7 +281,7 @@ TEST_CASE("N21: implicit methods are stable for any stiffness: no growth, and th
   }
 }
 
-TEST_CASE("steps of the stiff method do not depend on the stiffness", "[methods]") {
+TEST_CASE("the number of steps of the stiff method does not grow with the stiffness", "[methods]") {
   // An ellipsoid that spins, or swings on a ball joint, with increasing stiffness and damped vibrations.
   struct Run {
     long steps;

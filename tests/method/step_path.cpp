@@ -66,7 +66,8 @@ TEST_CASE("the interpolation within a step has the order of the dense output of 
   struct Case {
     std::unique_ptr<Integrator> method;
     bool controlled;
-    double order, h;   ///< order of the error of the path within one step; length of the longest step, s
+    /// `order`: order of the error of the path within one step. `h`: length of the longest step, s.
+    double order, h;
     long evaluations;  ///< additional evaluations of the path
   };
   std::vector<Case> cases;

@@ -1,5 +1,6 @@
-# Checks the includes. A file includes only its own folder and folders to its left in the list `order`. Apart from headers of
-# pliant, headers of core include only Eigen and the standard library. No include uses "..".
+# Checks the includes. A file includes only its own folder and folders to its left in the list `order`. Apart from headers
+# of pliant, headers of core include only Eigen, the standard library and the headers of vector instructions (immintrin.h,
+# arm_neon.h). No include uses "..". Each header has #pragma once.
 # Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(order math shape deform local part solve body collision project method contact simulate scene io render)

@@ -84,8 +84,8 @@ TEST_CASE(
       CHECK(basis.omega2.minCoeff() > 0);
       CHECK(std::is_sorted(basis.omega2.begin(), basis.omega2.end()));
 
-      // W has the fields of rigid motion and of the parameters: their values at the points of the basis,
-      // projected to the functions of the basis.
+      // The columns of W belong to the fields of rigid motion and of the parameters. Each column is M times
+      // the values of its field at the points of the basis, projected onto the functions of the basis.
       VecX<double> q_s(2);
       q_s << part->parameters().moving(0).rest_value(), part->parameters().moving(1).rest_value();
       std::vector<PointJet<double>> jets;
@@ -170,21 +170,22 @@ TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending ag
   // with the radius L / 10.
   CHECK(nearest(kPi / 10) <= 1e-6);
   CHECK(nearest(2 * kPi / 10) <= 1e-4);
-  const double unit = std::sqrt(2.6 / 4) / 100;
+  const double unit = std::sqrt(2.6 / 4) / 100;  // sqrt(E I / (rho A)) / L^2 of the beam
   CHECK(omega[0] == Approx(20.3813 * unit).epsilon(5e-3));
   CHECK(omega[1] == Approx(omega[0]).epsilon(1e-6));
 }
 
 TEST_CASE("a long cylinder by polynomials of degree 10: three bending frequencies near those of Timoshenko",
           "[bases][long]") {
-  // omega L^2 sqrt(rho A / E I). The values `solid` are the reference values of tests/local/solid_modes.cpp;
-  // `beam` has those of Timoshenko's beam, and `beam_error` bounds its relative errors.
+  // Frequencies as omega L^2 sqrt(rho A / (E I)). The values `solid` are the reference values of
+  // tests/local/solid_modes.cpp; `beam` has those of Timoshenko's beam, and `beam_error` bounds its relative
+  // errors.
   constexpr std::array<double, 3> beam{20.3813, 49.2314, 83.9790}, solid{20.41175, 49.4462, 84.565},
       beam_error{0.0016, 0.0046, 0.0072};
   const auto part = make_part("bar", "cylinder", {}, 1);
   part->rest({{"a1", 1}, {"a2", 1}, {"a3", 5}}).deform_locally(polynomials(10));
   part->prepare();
-  const double unit = std::sqrt(2.6 / 4) / 100;  // sqrt(E I / rho A) / L^2
+  const double unit = std::sqrt(2.6 / 4) / 100;  // sqrt(E I / (rho A)) / L^2
   const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt() / unit;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Index at = (omega.array() < (1 - 1e-5) * solid[k]).count();

@@ -83,6 +83,7 @@ Mat3<double> gradient(const Part& part, const VecMax<double>& q, double u, doubl
 }
 
 /// Returns the energy of a solid by a dense Gauss rule over u, v and w, with panels of pi / 4 in u and v.
+/// torus: whether u has the range of a torus.
 template <class Law>
 double dense_energy(const Part& part, const Law& law, const VecMax<double>& q, bool torus) {
   const auto rule = gauss_rule(10);
@@ -274,7 +275,8 @@ TEST_CASE("a closed spherical shell that breathes has the exact frequency", "[co
         Approx(2).epsilon(kStrainTolerance));
 }
 
-TEST_CASE("shells: force and stiffness are derivatives, and rotation causes no strain", "[continuum][long]") {
+TEST_CASE("shells: the force is the derivative of the energy, and rotation causes no strain",
+          "[continuum][long]") {
   Draws draws(9);
   for (const Body& body : {bodies()[0], bodies()[2], bodies()[3]}) {
     const auto part = make(body, "st_venant_kirchhoff_membrane", true);
@@ -302,7 +304,7 @@ TEST_CASE("shells: force and stiffness are derivatives, and rotation causes no s
   CHECK(turned == Approx(there).epsilon(10 * kStrainTolerance));
 }
 
-TEST_CASE("elasticity that does not fit a part is refused by name", "[continuum][long]") {
+TEST_CASE("elasticity that does not fit a part is refused with the reason", "[continuum][long]") {
   auto ball = [](const char* shape, const char* law) {
     auto part = make_part("ball", shape, {"taper"}, 1000);
     part->elasticity({law, 1e4, 0.3, 0.01}).make_dynamic({"a1"});

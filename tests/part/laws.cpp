@@ -1,5 +1,6 @@
 // Kinematics of parts, s of Eq. (3) and J of Eq. (9): every shape with several chains of deformations,
-// against an independent evaluation in long double.
+// against an independent evaluation in long double. Also surface functions, names of parameters, messages and
+// folds.
 #include "catch.h"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ void check_kinematics(const Part& part, const test::RandomState& state,
 
 }  // namespace
 
-TEST_CASE("s, J and Jdot qdot of every shape and several chains agree with long double", "[part][long]") {
+TEST_CASE("s, J and Jdot q_s_dot of every shape and several chains agree with long double", "[part][long]") {
   Draws draws(1);
   for_every_part([&](const Part& part) {
     check_kinematics(part, test::draw_state(draws, part), points_of(draws, part, 20));
@@ -326,7 +327,8 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
                                          test::has_text("make the body slimmer"));
   part->initial({{"bend.angle", 0.5}});
   CHECK_NOTHROW(part->prepare());
-  // The part folds if the curvature times the half width exceeds one: angle a1 / a3 = 1.
+  // The part folds if the curvature times the half width exceeds one, that is if angle a1 / a3 > 1. Here a3
+  // is 1 m.
   auto at = [](double a1, double angle) { return VecMax<double>(Eigen::Vector2d(a1, angle)); };
   CHECK_FALSE(part->is_inverted(at(1, 0.99)));
   CHECK(part->is_inverted(at(1, 1.01)));
@@ -441,7 +443,8 @@ TEST_CASE("N10: surface functions are correct at the tips of full tapers and on 
     }
 }
 
-TEST_CASE("the inside-outside function and its gradient are finite at the centre of a part", "[part]") {
+TEST_CASE("the inside-outside function and its gradient are finite at the centre of every shape except tori",
+          "[part]") {
   for (const auto& face : all_shapes()) {
     if (face->mesh() == MeshPattern::torus) continue;
     const std::unique_ptr<Part> part = make_part("part", face->name(), {}, 1000);

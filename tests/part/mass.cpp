@@ -21,7 +21,7 @@ namespace {
 
 struct Measured {
   double mass;
-  Vec3<double> centre, squares;  ///< mean of x^2, y^2, z^2
+  Vec3<double> centre, squares;  ///< centre of mass; means of x^2, y^2 and z^2
 };
 Measured solid(const Part& part) {
   const Inertia<double>& I = part.rest_inertia();
@@ -198,8 +198,8 @@ TEST_CASE("areas of shells", "[mass]") {
 }
 
 TEST_CASE("volumes and centres of deformed solids", "[mass]") {
-  // A taper changes the volume V to V (1 + tx ty <zeta^2>), with the mean <zeta^2> over the solid; twist,
-  // shear and bend_offset conserve the volume.
+  // A taper changes the volume V to V (1 + tx ty <zeta^2>). <zeta^2> is the mean of (z / a3)^2 over the
+  // undeformed solid. Twist, shear and bend_offset conserve the volume.
   for (double eps : {0.1, 0.5, 1.0, 2.0, 5.0}) {
     const long double a[3] = {1, 1, 1};
     const long double V = test::moment(a, eps, eps, 0, 0, 0), zz = test::moment(a, eps, eps, 0, 0, 2) / V;

@@ -1,4 +1,4 @@
-// The lowest modes of a mesh with either sparse factorisation.
+// The lowest modes of a mesh agree whichever library factors its matrix, Eigen or CHOLMOD.
 #include <pliant/part/local/local_laws.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/sphere.h>

@@ -13,8 +13,8 @@
 namespace pliant::test {
 
 /// Returns the range of random values of a parameter. For lengths it is half to twice the rest value, for
-/// angles the limits of the parameter. Other parameters are also at most max(2, 2 rest value) in absolute
-/// value.
+/// angles the limits of the parameter. For other parameters it is the part of the limits with absolute values
+/// of at most max(2, 2 rest value).
 inline Range range_of(const Parameter& p) {
   if (p.spec->relative) return {0.5 * p.rest_value(), 2 * p.rest_value()};
   const double reach = p.spec->quantity == Quantity::angle ? kInfinity : std::max(2.0, 2 * p.rest_value());
@@ -50,7 +50,8 @@ RandomState make_state(Draws& draws, const Part& part, F&& value) {
   return state;
 }
 
-/// Returns a random state within the ranges at which the part does not fold over.
+/// Returns a random state within the ranges at which the part does not fold over. Throws std::runtime_error
+/// if 10000 trials find none.
 inline RandomState draw_state(Draws& draws, const Part& part) {
   for (int trial = 0; trial < 10000; ++trial) {
     RandomState state = make_state(draws, part, draw_value);

@@ -56,9 +56,9 @@ struct Geometry {
   double volume = 0, min_quality = kInfinity, min_jacobian = kInfinity;
 };
 /// Returns the volume of a mesh with nodes at s, and the smallest quality and Jacobian of its elements. The
-/// quality is 12 (3 V)^(2/3), with the volume V, over the sum of the squared edge lengths; it is 1 for a
-/// regular tetrahedron. The Jacobian is
-/// the smallest determinant in a quadratic element over the mean determinant.
+/// quality of an element with the volume V is 12 (3 V)^(2/3) / (sum of the squared edge lengths), or 0 if V
+/// is not positive; it is 1 for a regular tetrahedron. The Jacobian of a quadratic element is the smallest
+/// determinant at its quadrature points / mean determinant; for linear elements it is infinite.
 Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   Geometry g;
   for (Eigen::Index t = 0; t < solid.elements().cols(); ++t) {

@@ -34,6 +34,7 @@ Topology topology(const Eigen::Matrix3Xi& triangles, int vertices) {
   }
   return {vertices, static_cast<int>(edges.size()) / 2, static_cast<int>(triangles.cols()), closed};
 }
+/// Returns the number of different points.
 int count_different(const Eigen::Matrix3Xd& x) {
   std::set<std::array<double, 3>> all;
   for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});
@@ -52,6 +53,7 @@ double mean_normal_error(const TriangleMesh& mesh) {
   }
   return error / areas;
 }
+/// Returns twice the smallest area of a triangle.
 double min_area(const TriangleMesh& mesh) {
   double min_area = kInfinity;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {

@@ -1,5 +1,5 @@
-// The work of friction in the ledger: sliding blocks, balls that start to roll, conveyor belts; zero work
-// without sliding.
+// The work of friction in the ledger, for sliding blocks, a ball that starts to roll and a conveyor belt.
+// Without sliding the ledger records no work.
 #include "catch.h"
 
 #include <cmath>
@@ -39,7 +39,8 @@ Part& block_on_slope(MultiBody& body, double friction) {
   body.plane("slope", Vec3<double>(0, 0, 0), n);
   return box(body, "block", {0.1, 0.1, 0.1}, 0.1 * n, R);
 }
-/// Checks the work of friction, and that contact has done no work and the ledger balances.
+/// Checks that friction has dissipated this energy (J), that contact has done no work, and that the ledger
+/// balances.
 void check_friction(Simulation& simulation, double dissipated) {
   CHECK(work(simulation, Work::friction) == Approx(-dissipated).epsilon(1e-12).margin(1e-13));
   CHECK(std::abs(work(simulation, Work::contact)) < 1e-11);
@@ -67,7 +68,7 @@ TEST_CASE("friction dissipates mu m g times the distance that a block slides", "
       check_friction(simulation, 0.5 * block.total_mass() * (2 * 2 + 0.5 * 0.5));
     }
     if (method != "semi_implicit_euler") continue;
-    // The error of the distance is that of the method.
+    // The distance has the error of the method, which is of first order.
     CHECK(test::observed_order(errors) == Approx(1).margin(0.02));
     CHECK(errors.back() < 4e-3);
   }
@@ -146,8 +147,8 @@ TEST_CASE("forces and torques that press a part onto a floor do no work, and the
       body.torque("turned", block, Vec3<double>(0.3, 0.2, 0));
       Simulation simulation(body, method);
       test::run(simulation, 0.3, 300);
-      // About 94 N times 1e-10 m has been observed, within the tolerance of resting contacts. Friction
-      // dissipates 3 J if the block moves.
+      // Works of about 94 N times 1e-10 m have been observed; 1e-10 m is within the tolerance of resting
+      // contacts. Friction dissipates 3 J if the block moves.
       CHECK(std::abs(work(simulation, Work::forces)) < 1e-7);
       CHECK(std::abs(work(simulation, Work::contact)) < 1e-7);
       CHECK(std::abs(simulation.ledger().balance) < 1e-9);

@@ -1,5 +1,6 @@
-// About five thousand simultaneous contacts of balls packed densely in a box of planes: accuracy of the
-// impulses, and growth of time and memory with the number of contacts. Also piles and a poured heap.
+// Balls are packed densely between a floor and four walls, with about five thousand simultaneous contacts.
+// The tests check the accuracy of the impulses, the memory, and the growth of the time with the number of
+// contacts. Also piles and a poured heap.
 #include "catch.h"
 
 #include <algorithm>
@@ -58,7 +59,7 @@ std::size_t packed_contacts(int across) {
   return static_cast<std::size_t>(3 * 2 * n * (n - 1) + 2 * 2 * m * (m - 1) + 4 * 4 * m * m + n * n +
                                   4 * 3 * n);
 }
-/// Adds layers that become smaller towards the top.
+/// Adds a floor and `across` layers of balls that become smaller towards the top.
 void pile(MultiBody& body, int across) {
   for (int k = 0; k < across; ++k)
     layer(body, across - k, kRadius * Vec3<double>(k, k, 1 + k * std::sqrt(2.0)));
@@ -75,7 +76,7 @@ double heap_memory() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
-/// Returns the shortest processor time of a step, s.
+/// Performs `steps` steps and returns the shortest processor time of one of them, s.
 double min_step_time(Simulation& simulation, int steps) {
   double min_time = kInfinity;
   for (int i = 0; i < steps; ++i) {
@@ -193,8 +194,9 @@ TEST_CASE("N55: a poured heap comes to rest without penetration", "[contact][lon
   CHECK(all[9 * all.size() / 10] < 5e-3);
 }
 
-TEST_CASE("N55: memory and time of five thousand contacts grow almost linearly with their number",
-          "[contact][long]") {
+TEST_CASE(
+    "N55: memory for five thousand contacts is bounded, and time grows almost in proportion to their number",
+    "[contact][long]") {
   MultiBody few, many;
   pack(few, 7);
   pack(many, 14);
@@ -212,7 +214,8 @@ TEST_CASE("N55: memory and time of five thousand contacts grow almost linearly w
     time_large = std::min(time_large, min_step_time(large, 5));
   }
   CAPTURE(heap_memory() - after);
-  CHECK(heap_memory() - after < 1e5);  // later steps allocate no further memory; 0.5 kB has been observed
+  // Later steps allocate almost no further memory: 0.5 kB has been observed.
+  CHECK(heap_memory() - after < 1e5);
   const double growth = static_cast<double>(many.parts().size()) / static_cast<double>(few.parts().size());
   CAPTURE(growth, time_small, time_large);
   // The time has been observed to grow with the number of parts to the power 1.2.

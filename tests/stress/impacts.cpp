@@ -51,7 +51,8 @@ TEST_CASE("N58: a moving plane that appears in a ball does the work that the bal
         for (int i = 0; i < 600; ++i) {
           const double before = simulation.state().q[2];
           simulation.step(h);
-          // The separation adds at most one size a second to the velocity after the impulse.
+          // The separation adds at most one size of the ball (its radius) a second to the velocity after the
+          // impulse.
           REQUIRE(simulation.state().q[2] - before <= h * (v + kRadius) * (1 + 1e-9));
           REQUIRE(simulation.state().v[2] <= v * (1 + 3e-11));
           REQUIRE(work(simulation.ledger(), Work::contact) <= energy * (1 + 3e-11));
@@ -72,7 +73,7 @@ TEST_CASE("N59: a ball hits a board on a floor and a hinge: changes of momentum 
   constexpr double kTilt = 0.2, kSpeed = 3;
   for (const double e : {0.0, 0.5})
     for (const double mu : {0.0, 0.5})
-      for (const double x : {-0.5, -0.2, 0.5}) {  // on the arm that the floor supports, or on the other arm
+      for (const double x : {-0.5, -0.2, 0.5}) {  // x < 0: on the arm that the floor supports
         CAPTURE(flexible, e, mu, x);
         MultiBody body;
         body.gravity.setZero();
@@ -164,10 +165,10 @@ TEST_CASE("N60: the ends of a slack string pass each other, and the string stops
 }
 
 TEST_CASE(
-    "a string becomes slack where the tension of a swing vanishes, and taut again at the end of the fall",
+    "a swinging string becomes slack where its tension vanishes, and taut again at the end of the free fall",
     "[joints]") {
   // The mass starts at the bottom with v^2 = 3.5 g l. The string becomes slack when the mass is
-  // (v^2 / (g l) - 2) / 3 l above the hook.
+  // l (v^2 / (g l) - 2) / 3 above the hook.
   const double l = 1, g = 9.81;
   for (const double h : {2e-3, 1e-3, 5e-4}) {
     MultiBody body;
@@ -181,8 +182,8 @@ TEST_CASE(
       simulation.step(h);
     }
     CHECK(state.joints[0] == JointMode::slack);
-    CHECK(state.q[2] == Approx(0.5 * l).margin(4e-5));  // 1.1e-5 has been observed, for all steps
-    // The path is a parabola until the distance is l again.
+    CHECK(state.q[2] == Approx(0.5 * l).margin(4e-5));  // 1.1e-5 m has been observed, for each step length
+    // The path is a parabola until the distance from the hook is l again.
     const double t = simulation.time();
     const Vec3<double> x = state.q.head<3>(), v = state.v.head<3>();
     while (state.joints[0] == JointMode::slack) {

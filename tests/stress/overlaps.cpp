@@ -22,7 +22,8 @@ using test::Draws;
 namespace {
 
 constexpr double kSize = 0.1;  // the largest semi-axis, m
-/// Overlapping parts are separated with this relative speed, in sizes of the smaller part a second.
+/// Overlapping parts are separated with this relative speed, in sizes (Part::size()) of the smaller part a
+/// second.
 constexpr double kSeparationSpeed = 1;
 
 Part& add_part(MultiBody& body, const std::string& name, const std::string& shape) {
@@ -40,8 +41,9 @@ Eigen::Quaterniond random_rotation(Draws& draws) {
                             draws.uniform(0.1, 1))
       .normalized();
 }
-/// Returns the largest relative speed of the centres of two parts during the separation, in sizes a second.
-/// Checks that the separation adds no velocity, and that no overlap remains.
+/// Simulates until the time `until` (s). Returns the largest relative speed of the centres of any two of the
+/// first `parts` parts, in sizes a second. Checks that the separation adds no velocity, and that no overlap
+/// remains.
 double separation_speed(Simulation& simulation, double until, int parts) {
   const double h = 1e-2, size = simulation.model().parts()[0].part->size();
   double fastest = 0;
@@ -59,7 +61,7 @@ double separation_speed(Simulation& simulation, double until, int parts) {
   CHECK(test::deepest_overlap(simulation) < 1e-9 * size);
   return fastest;
 }
-/// Adds a soft or rigid ellipsoid that starts half a radius deep in the floor.
+/// Adds a floor and a soft or rigid ellipsoid, whose depth in the floor is half of its vertical semi-axis.
 Part& part_in_floor(MultiBody& body, bool soft) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   body.contact.friction = 0.3;
@@ -91,10 +93,11 @@ Part& ball(MultiBody& body, const std::string& name, const std::string& kind, co
 /// Results of the separation of two balls of `ball`.
 struct Separation {
   double first_overlap = 0;  // overlap at the start, m
-  double fastest = 0;        // relative speed of their centres while the overlap is deep, sizes a second
-  double distance = 0;       // distance of the centres at the end, m
-  double overlap = 0;        // overlap at the end, m
-  double added = 0;          // energy added, J
+  double fastest = 0;   // largest relative speed of their centres while they overlap by more than 0.2 kSize,
+                        // in sizes a second
+  double distance = 0;  // distance of the centres at the end, m
+  double overlap = 0;   // overlap at the end, m
+  double added = 0;     // change of the energy in the run, J
   Ledger ledger;
 };
 Separation separate_balls(Simulation& simulation, double until, double h) {
@@ -138,7 +141,7 @@ TEST_CASE("N54: separated parts push others out of their way within the step, al
   CHECK(simulation.ledger().kinetic == 0);
 }
 
-TEST_CASE("N54: deep overlaps are separated at their own speed, independent of motion elsewhere",
+TEST_CASE("N54: deep overlaps are separated at one size a second, independently of motion elsewhere",
           "[contact]") {
   MultiBody body;
   body.gravity.setZero();
@@ -190,11 +193,11 @@ TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest fa
 }
 
 TEST_CASE("N54: parts with local deformation are separated as wholes, from any depth", "[contact][long]") {
-  // The last part of the overlap is separated node by node, which dents the parts slightly. Only this needs
-  // work.
+  // The last part of the overlap is separated node by node, which dents the parts slightly. Only these dents
+  // need work.
   struct Case {
     const char *one, *other, *method;
-    double h, max_work;  // s, J
+    double h, max_work;  // step, s; largest permitted work of contact, J
   };
   for (const auto& [one, other, method, h, max_work] :
        {Case{"shell", "shell", "semi_implicit_euler", 2e-3, 4e-4}, Case{"shell", "shell", "rk4", 2e-3, 4e-4},
@@ -226,7 +229,7 @@ TEST_CASE("N54: parts with local deformation are separated as wholes, from any d
     }
 }
 
-TEST_CASE("N54: a soft part that overlaps another is separated from it while joints and a floor support it",
+TEST_CASE("N54: overlapping soft parts are separated also on a joint, on a floor and with global parameters",
           "[contact][long]") {
   MultiBody body;
   body.contact.active = true;
@@ -250,7 +253,7 @@ TEST_CASE("N54: a soft part that overlaps another is separated from it while joi
   const Separation separation = separate_balls(simulation, 2, 1e-3);
   CAPTURE(separation.added, separation.ledger.work[static_cast<int>(Work::contact)],
           separation.ledger.balance);
-  // On the floor the parts also move by gravity and impacts, so that no bound is specified.
+  // On the floor the parts also move by gravity and impacts, so that no bound of their speed is specified.
   if (body.gravity.isZero()) CHECK(separation.fastest < 2.5 * kSeparationSpeed);
   CHECK(separation.distance > 1.8 * kSize);
   CHECK(separation.overlap < 1e-3 * kSize);
@@ -285,15 +288,15 @@ TEST_CASE("N54: several parts at one place are separated at a bounded speed", "[
               .place(draws.vector(spread), random_rotation(draws));
         Simulation simulation(body, "rk4");
         CAPTURE(shape, n, spread);
-        // Each part separates from each of the others; 2.3 and 2.5 have been observed.
+        // Each part separates from each of the others; speeds of 2.3 and 2.5 have been observed.
         CHECK(separation_speed(simulation, 3.5, n) < n * kSeparationSpeed);
       }
 }
 
 TEST_CASE("N54: parts of other shapes with small overlaps are separated at a bounded speed", "[contact]") {
   Draws draws(43);
-  // Parts with edges rotate during the separation, and contacts that oppose each other accelerate it: 2.5 has
-  // been observed. For deep overlaps no bound is specified.
+  // Parts with edges rotate during the separation, and contacts that oppose each other accelerate it: a speed
+  // of 2.5 has been observed. For deep overlaps no bound of the speed is specified.
   struct Case {
     const char* shape;
     int trials;
@@ -311,7 +314,7 @@ TEST_CASE("N54: parts of other shapes with small overlaps are separated at a bou
         for (const int i : {0, 1})
           add_part(body, "part" + std::to_string(i), shape).place(i * distance * along, R[i]);
       };
-      double distance = 1, inside = 0;  // distance at which the parts touch, m, by bisection
+      double distance = 1, inside = 0;  // bounds of the distance at which the parts touch, m, for bisection
       for (int k = 0; k < 20; ++k) {
         const double middle = 0.5 * (distance + inside);
         MultiBody body;
@@ -375,7 +378,7 @@ TEST_CASE("N54: the energy that a separation adds to deformable parts is recorde
             .place({0, 0, 0.11 * i})
             .stiffness({{"a1", 3e4}, {"a2", 3e4}, {"a3", 3e4}});
     };
-    check("rk4", build, 0.015, 1.8, 4e-5);  // J; the work is 0.017 J
+    check("rk4", build, 0.015, 1.8, 4e-5);  // the work is 0.017 J
   }
   SECTION("nodes") {
     check(

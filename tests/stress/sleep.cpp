@@ -1,5 +1,6 @@
-// Events that wake sleeping bodies, besides impacts and forces: prescribed motion of a part or of the end of
-// a string, planes and plates that appear or disappear.
+// Events other than impacts and forces that wake sleeping bodies: prescribed motion of a part or of the end
+// of a string, planes that appear, and plates that appear or disappear. Other prescribed motion does not wake
+// them.
 #include "catch.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ void tower(MultiBody& body) {
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Adds a box of the given half axes with prescribed motion.
+/// Adds a box of the given half lengths with prescribed motion.
 Part& add_moving_box(MultiBody& body, const Vec3<double>& half, TimeVector position) {
   PrescribedMotion motion;
   motion.position = std::move(position);
@@ -41,7 +42,8 @@ Part& add_moving_box(MultiBody& body, const Vec3<double>& half, TimeVector posit
 TimeFunction ramp_at_half(const std::string& scale, const std::string& from) {
   return TimeFunction::formula(from + " + " + scale + " * max(t - 0.5, 0)");
 }
-/// Returns whether both cubes are awake at 0.54 s. Requires that they sleep until 0.5 s.
+/// Returns whether both cubes are awake at 0.54 s. Requires that they sleep at 0.3 s and do not move until
+/// 0.498 s.
 bool wakes_at_half(MultiBody& body) {
   Simulation simulation(body, "rk4");
   while (simulation.time() < 0.3) simulation.step(kStep);
@@ -55,8 +57,10 @@ bool wakes_at_half(MultiBody& body) {
 
 }  // namespace
 
-TEST_CASE("moving parts, planes and plates that touch or leave sleeping bodies wake them",
-          "[sleep][contact]") {
+TEST_CASE(
+    "parts with prescribed motion, planes, plates and strings wake sleeping bodies that they touch, leave or "
+    "pull",
+    "[sleep][contact]") {
   MultiBody body;
   SECTION("a paddle that approaches") {
     tower(body);
