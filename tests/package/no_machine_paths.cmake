@@ -2,7 +2,7 @@
 # Run as cmake -D SOURCE=... -P no_machine_paths.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(places "(^|[^A-Za-z0-9_.])/(home|root|work|Users|mnt|media)/[A-Za-z0-9_]|[A-Z]:\\\\Users")
-set(folders .ci apps bench cmake include scenes src tests docs)
+set(folders .ci apps bench include scenes src tests)
 list(TRANSFORM folders REPLACE "(.+)" "${SOURCE}/\\1/*" OUTPUT_VARIABLE patterns)
 file(GLOB_RECURSE files ${patterns})
 file(GLOB top LIST_DIRECTORIES false ${SOURCE}/*)
