@@ -37,6 +37,7 @@ constexpr double kSideStep = 1e-7;
 /// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
 /// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
+/// Number of intervals between the samples along an edge, and of bisections around the lowest sample.
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
 constexpr double kSameContact = 0.02, kSameNormal = 0.01;
