@@ -35,8 +35,8 @@ inline void torus_surface(int resolution, std::vector<Vec3<double>>& places,
     }
 }
 
-/// Sets the normals of a mesh from those of its vertices. A corner whose face deviates from the vertex normal
-/// by more than the crease angle gets the normal of the face.
+/// Sets the normals of a mesh from those of its vertices. A corner of a triangle gets the normal of the
+/// triangle instead if this differs from the normal of the vertex by more than the crease angle.
 inline void set_normals(TriangleMesh& mesh, std::vector<Vec3<double>> normals) {
   mesh.corners = mesh.triangles;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
