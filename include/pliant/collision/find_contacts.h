@@ -1,5 +1,6 @@
 // Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
-// other. The contacts are the lowest points of each part over planes, obstacles and the parts near it.
+// other. The contacts of most shapes are the lowest points of each part over planes, obstacles and the parts
+// near it. Ellipsoids, boxes, and balls on boxes have closed forms.
 #pragma once
 
 #include <memory>
@@ -47,7 +48,7 @@ class ContactFinder {
   /// Result of the search before a step: whether anything can touch during the step, and its largest length.
   struct Neighbourhood {
     bool empty = true;  ///< nothing can touch during the step
-    bool soft = false;  ///< parts that deform locally may touch something
+    bool soft = false;  ///< parts that deform locally may touch something; MeshFinder::approach() sets it
     double h = 0;       ///< largest step in which no part passes through another part or an obstacle, s
     /// Distance that each part may move beyond the prediction without changing this result, m.
     double spare = 0;

@@ -1,6 +1,6 @@
-// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared
-// and for output. A step uses templates instead (shape_jets.h). shape/shape.h documents the members of a
-// shape; the optional ones have defaults here.
+// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared,
+// for contact search and for output. The dynamics uses templates instead (shape_jets.h). shape/shape.h
+// documents the members of a shape; the optional ones have defaults here.
 #pragma once
 
 #include <memory>

@@ -13,8 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// Largest distance of the surface from its sample points, in sizes of the part (Part::size(), its largest
-/// half extent).
+/// Largest distance of the surface from the chords between its sample points, in sizes of the part
+/// (Part::size(), its largest half extent).
 constexpr double kSag = 0.02;
 /// Largest distance of a low point from the sample point that its search started from, in sizes.
 constexpr double kSpacing = 0.4;
