@@ -13,7 +13,8 @@
 namespace pliant {
 
 namespace {
-/// The line between centres that are nearer than this, times the sum of the sizes, is no candidate.
+/// The line of centres is a candidate only if the distance of the centres exceeds this, times the sum of the
+/// sizes.
 constexpr double kOneCentre = 1e-9;
 /// The centre of part a is treated as inside part b if f = w - 1 of b is less than this at the centre. A
 /// centre slightly outside b (f > 0) is included, because the lowest points of b over a are then close to

@@ -15,7 +15,7 @@ namespace {
 
 /// Largest rotation of a part over a plane in a step, rad: its points may move by this times its reach.
 constexpr double kMaxTurnOverPlane = 0.5;
-/// A step that is done is kept if a motion exceeds its limit by at most this factor.
+/// A step that is done is kept if no motion is larger than its limit times this factor.
 constexpr double kToleratedTravel = 1.125;
 
 /// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,

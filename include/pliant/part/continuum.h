@@ -148,7 +148,7 @@ class ContinuumEnergy {
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
   /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
   /// positive semidefinite. If W is quadratic in the strain, it is stiffness() without the geometric
-  /// stiffness, which are the terms with second derivatives of the strain.
+  /// stiffness (the terms with second derivatives of the strain).
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:

@@ -27,9 +27,9 @@ class Part : public PartEvaluation {
 
   /// Number of local coordinates.
   int n_d() const { return constants_.local ? static_cast<int>(constants_.local->n_d()) : 0; }
-  /// Number of velocities: linear, angular, dynamic parameters, local coordinates.
+  /// Number of velocities: linear, angular, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_v() const { return fixed() ? 0 : 6 + n_s() + n_d(); }
-  /// Number of coordinates: position, quaternion, dynamic parameters, local coordinates.
+  /// Number of coordinates: position, quaternion, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_q() const { return fixed() ? 0 : 7 + n_s() + n_d(); }
 
   const MassPoints& mass_points() const { return constants_.mass_points; }

@@ -1,5 +1,5 @@
-// The description of a part: everything that the user sets. It is the first base class of Part (part.h),
-// which inherits the setters. Part::prepare() computes the constants of the part from this description.
+// The description of a part: everything that the user sets. Part (part.h) inherits these setters by way of
+// PartEvaluation. Part::prepare() computes the constants of the part from this description.
 #pragma once
 
 #include <memory>
@@ -28,9 +28,9 @@ class PartDescription {
   PartDescription(const PartDescription&) = delete;
   PartDescription& operator=(const PartDescription&) = delete;
 
-  // The setters. Each returns the part, so that calls chain. Each throws std::invalid_argument, which names
-  // the part, the parameter, the value and the allowed values, and std::logic_error while a Model uses the
-  // part.
+  // The setters. Each returns the part, so that calls chain. For an impossible argument each throws
+  // std::invalid_argument; the message names the part and, where there are any, the parameter, the value and
+  // the allowed values. While a Model uses the part each throws std::logic_error.
 
   /// Sets the position of the frame (m, world) and its orientation (body to world; normalised here).
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());

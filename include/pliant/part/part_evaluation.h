@@ -1,7 +1,7 @@
 // The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
 // J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the inverse map, and the mass matrix M and the inertial
-// forces g_q of Eq. (11). It is the second base class of Part (part.h). The function bodies are in
-// part_evaluation-inl.h (geometry) and inertia-inl.h (M and g_q).
+// forces g_q of Eq. (11). Part (part.h) derives from it. The function bodies are in part_evaluation-inl.h
+// (geometry) and inertia-inl.h (M and g_q).
 #pragma once
 
 #include <memory>

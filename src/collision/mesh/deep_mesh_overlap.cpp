@@ -21,8 +21,8 @@ namespace {
 /// An overlap is deep if it exceeds both kDeep times the thickness of the thinner part and kTravels times the
 /// distance by which the last step can have moved the parts relative to each other.
 constexpr double kDeep = 0.06, kTravels = 2;
-/// The line between centres that are nearer than this, times the sum of the radii of the bounding balls, is
-/// no candidate.
+/// The line of centres is a candidate only if the distance of the centres exceeds this, times the sum of the
+/// radii of the bounding balls.
 constexpr double kSameCentre = 1e-9;
 
 /// Whether a point is inside a closed mesh. Seen from an inside point, the solid angle of the mesh is 4 pi;
