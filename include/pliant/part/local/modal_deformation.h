@@ -5,8 +5,9 @@
 // G_a = [e_a I, -[p_a]x, J_a]. Then
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
-// f_r and f_d are the forces on (c, theta, q_s) and on q_d. The reference shape s is not in the span of the
-// fields phi; integrals of s alone are those of the part (part/inertia.h).
+// f_r and f_d are the forces on (c, theta, q_s) and on q_d. S is a Schur complement, not the shape matrix of
+// Eq. (5). The reference shape s is not in the span of the fields phi; integrals of s alone are those of the
+// part (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>

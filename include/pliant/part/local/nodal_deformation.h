@@ -39,7 +39,7 @@ struct NodalWorkspace final : LocalWorkspace {
   /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
-  // Stage forces(), N.
+  // Stage forces(). Forces are in N.
   VecX<double> x_dot;  ///< rates of x in the body frame, for damping
   /// f: forces of the energies that depend on p. f_d: F_d, forces of the energies that depend on d, and the
   /// damping by alpha.
