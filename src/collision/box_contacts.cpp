@@ -12,8 +12,8 @@ namespace pliant {
 
 namespace {
 
-/// A face normal is preferred to an axis tested later whose gap is larger by at most this, in sizes (largest
-/// half size) of the smaller box.
+/// An axis is preferred to axes tested later whose gaps are larger by at most this, in sizes (largest half
+/// size) of the smaller box. Face normals are tested first.
 constexpr double kFaceFirst = 1e-6;
 /// Two edges are parallel, and have no crossing, if the sine of the angle between them is below this.
 constexpr double kParallelEdges = 1e-6;
@@ -66,8 +66,8 @@ Vec3<double> nearest_in_box(const PlacedBox& box, const Vec3<double>& x) {
   return box.c + box.R * in_box.cwiseMin(box.half).cwiseMax(-box.half);
 }
 
-/// Returns the point of an edge of a that is nearest to an edge of b. The two edges are those whose cross
-/// product is the axis and that face each other.
+/// Returns the point of an edge of a that is nearest to an edge of b. The cross product of the two edges is
+/// along the axis. Of all such edges they are those that face each other.
 Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
   const Vec3<double> p = farthest_corner(a, axis.n, axis.of_a), q = farthest_corner(b, -axis.n, axis.of_b);
   const Vec3<double> e = a.R.col(axis.of_a), f = b.R.col(axis.of_b), d = q - p;
@@ -97,7 +97,7 @@ void clip(Polygon& polygon, const Vec3<double>& n, double bound) {
 }
 
 /// Returns the face of a box whose normal is most opposite to n, clipped to the region over a face of the
-/// other box. The latter face has the normal n, along axis `number` of the other box.
+/// other box. The face of the other box has the normal n, along axis `number` of that box.
 Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const Vec3<double>& n) {
   const Vec3<double> in_box = box.R.transpose() * n;
   int k = 0;

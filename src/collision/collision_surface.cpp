@@ -23,13 +23,13 @@ constexpr double kCoarseMargin = 1.1;
 /// Largest distance of the surface from the chords between its sample points, in sizes of the part
 /// (Part::size(), its largest half extent).
 constexpr double kSurfaceSag = 0.02;
-/// Largest distance between the lowest sample point and the lowest surface point, in sizes, for two thin
-/// parts that cross.
+/// Largest height of the lowest sample point over the lowest surface point, in sizes. Two thin parts that
+/// cross have the largest one.
 constexpr double kThinSag = 0.1;
 /// Sample points whose heights differ by at most this, in sizes of the part, are equally low.
 constexpr double kSameHeight = 1e-6;
-/// Points nearer than kSamePlace, in sizes, are merged. Two points are on one flat face if the middle of
-/// their chord is at most kFlatChord below the surface, in sizes.
+/// Points nearer to each other than kSamePlace, in sizes, are merged. Two points that are not merged are on
+/// one flat face if the middle of their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
 /// The test whether a sample point is already the lowest point uses a stencil of kCorner spacings.
 /// Differences of heights up to kHeightRounding, in sizes, are rounding, so that they start no search on a
@@ -39,18 +39,19 @@ constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
 constexpr double kFlatStencil = 1e-13;
 /// The search ends at this size of its stencil, in spacings.
 constexpr double kMinStencil = 1e-8;
-/// Directions nearer to a pole, where the sine of the angle to the z axis is below this, are not described by
-/// latitude and longitude.
+/// A direction is near a pole if the sine of its angle to the z axis is at most this. Such directions are not
+/// described by latitude and longitude.
 constexpr double kNearPole = 0.2;
 constexpr int kMaxStencilHalvings = 60;
 
-/// Nine places around a centre; the first coordinate of Chart changes fastest. A place is the argument of
+/// Nine places around a centre. The first coordinate of Chart changes fastest. A place is the argument of
 /// ShapeInterface::mesh_label(): a direction, or the pair of angles of a torus.
 using Stencil = std::array<Vec3<double>, 9>;
 
 /// Two coordinates for the places around a sample point. On a ball pattern they are latitude and longitude,
 /// because rims and edges follow these; near its poles they are offsets along any two tangents. On a torus
-/// they are u and v. Neighbouring sample points are one spacing apart.
+/// they are u and v. Towards the poles the second coordinate is longitude divided by a factor above 1,
+/// because the sample points of a circle of latitude are farther apart in longitude there.
 class Chart {
  public:
   Chart(const Vec3<double>& start, bool ball) : start_(start) {
@@ -65,8 +66,9 @@ class Chart {
       e2_ = start.normalized().cross(e1_);
     }
   }
-  /// Returns the distance to the farthest neighbour in each coordinate, in spacings. In longitude it is 2,
-  /// because circles of latitude are shorter than great circles.
+  /// Returns the largest distance of the search from the sample point in each coordinate, in spacings
+  /// (CollisionSurface::spacing_). In longitude it is 2, because circles of latitude are shorter than great
+  /// circles.
   Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
   Vec3<double> place(const Eigen::Vector2d& x) const {
     if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
@@ -105,10 +107,10 @@ class Chart {
   double latitude_ = 0, longitude_ = 0, widening_ = 1;
 };
 
-/// Returns the steps from the centre of a stencil to the minima of quadratics through its heights h (m), in
-/// stencil radii, at most 1. Two quadratics depend on one coordinate each; they suit rims and level lines of
-/// a surface. A third one depends on both coordinates. A quadratic whose second difference is at most `flat`
-/// (m) is skipped.
+/// Returns the steps from the centre of a stencil to the minima of quadratics that fit its heights h (m), in
+/// stencil radii. No component of a step exceeds 1. Two quadratics depend on one coordinate each; they suit
+/// rims and level lines of a surface. A third one depends on both coordinates. A quadratic whose second
+/// difference is at most `flat` (m) in some direction is skipped.
 std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
   std::vector<Eigen::Vector2d> steps;
   auto add = [&](const Eigen::Vector2d& step) {
@@ -130,9 +132,9 @@ std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double fla
   return steps;
 }
 
-/// Returns the outermost of some points: the point farthest from the first one, the point farthest from that,
-/// and the points farthest from the line through these two, on either side. some: column numbers of p. Points
-/// nearer than `same` (m) to each other are one.
+/// Returns the outermost of some points, at most four: the point A farthest from the first of them, the point
+/// B farthest from A, and on either side of the line through A and B the point farthest from this line. some:
+/// column numbers of p. Points nearer than `same` (m) to each other are one.
 std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
                                     double same) {
   std::vector<Eigen::Index> chosen;
@@ -212,7 +214,7 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
 }
 
 // Longer than 60 lines, because every stage of the pattern search works on the stencil, the best point and
-// the radius. Small functions would have to pass these to each other.
+// the radius. Small functions would have to pass these three to each other.
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
   // A stencil of three by three places surrounds the best point. Quadratics through its heights propose the

@@ -1,4 +1,4 @@
-// Finds the rule of each pair of things from the names in ContactSettings.
+// Finds the rule of each pair of parts, planes and obstacles from the names in ContactSettings.
 #include <pliant/collision/contact_rules.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // The lowest points of one part over the other are then on the far side of the other. The contact normal is
 // the direction n of least depth among a few candidates,
 //   depth(n) = h_a(-n) + h_b(n) - n . (c_a - c_b),
-// where h are the support functions of the surfaces about their centres.
+// where h_a and h_b are the support functions of the surfaces about their centres.
 #include <limits>
 
 #include <pliant/collision/ellipsoid_points.h>
@@ -13,11 +13,12 @@
 namespace pliant {
 
 namespace {
-/// The line between centres that are nearer than this, times the sum of the sizes, is no candidate.
+/// The line of centres is a candidate only if the distance of the centres exceeds this, times the sum of the
+/// sizes.
 constexpr double kOneCentre = 1e-9;
-/// The centre of a part is treated as inside the other part if f = w - 1 of the other part is less than this
-/// at the centre. A centre slightly outside (f > 0) is included, because the lowest points of the other part
-/// over the first one are then close to this centre.
+/// The centre of part a is treated as inside part b if f = w - 1 of b is less than this at the centre. A
+/// centre slightly outside b (f > 0) is included, because the lowest points of b over a are then close to
+/// this centre.
 constexpr double kNearCentre = 0.1;
 }  // namespace
 
@@ -32,7 +33,8 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
   return p.col(best);
 }
 
-/// Returns whether two parts overlap deeply; if so, appends their contact.
+/// Returns whether two parts overlap deeply; if so, appends their contact. A torus never overlaps deeply,
+/// because its centre is outside it.
 bool ContactFinder::find_deep_overlap(int a, int b, const ContactRule& rule,
                                       std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];

@@ -1,5 +1,5 @@
-// Nearest points of ellipsoids: the support direction, and Newton's method for the equation 1 / |y(lambda)|
-// = 1.
+// Nearest points of ellipsoids: the support direction, and Newton's method for the scalar equation
+// 1 / |y(lambda)| = 1.
 #include <pliant/collision/ellipsoid_points.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Vec3<double> nearest_direction(const Mat3<double>& M, const Vec3<double>& r) {
   const Vec3<double> g = -V.transpose() * (M.transpose() * r);
   const Vec3<double> stiff = (modes.eigenvalues().array() - modes.eigenvalues()[0]).max(0);
   auto along = [&](double lambda) -> Vec3<double> { return g.array() / (stiff.array() + lambda); };
-  // 1 / |y| is concave and increasing in lambda, so Newton's method on it converges from below.
+  // 1 / |y| is concave and increasing in lambda, so Newton's method for this function converges from below.
   const double upper = g.norm(), lower = std::abs(g[0]);  // bounds of the lambda with |y| = 1
   const double tiny = std::numeric_limits<double>::epsilon() * (stiff[2] + upper);
   double lambda = std::max(lower, tiny);

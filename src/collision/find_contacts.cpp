@@ -27,7 +27,7 @@ constexpr double kMergeDistance = 0.03;
 /// is at a share kInner of the way to the middle of the contact. At an edge their cosine is below
 /// kEdgeCosine.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
-/// Points nearer to a surface than this, in sizes of the part, are on it.
+/// Points nearer to the surface of a part than this, in sizes of the part, are on it.
 constexpr double kFlush = 1e-4;
 /// Largest gap over an obstacle that min_gap() returns, in sizes of the part.
 constexpr double kMaxReportedGap = 0.1;
@@ -35,8 +35,8 @@ constexpr double kMaxReportedGap = 0.1;
 constexpr double kBisectionTolerance = 1e-12;
 /// The boxes of the pair search are enlarged by this share of the size of a part.
 constexpr double kPairMargin = 0.05;
-/// The enlarged boxes also include half the largest gap of the search. They are computed again if this half
-/// exceeds kMaxExcess times the half now needed, plus the least margin.
+/// The boxes are also enlarged by half the largest gap of the search. They are computed again if this half
+/// gap exceeds kMaxExcess times the half gap of the present search plus the least margin of the boxes.
 constexpr double kMaxExcess = 2;
 /// Contacts are merged only if the difference of their normals has a norm below this.
 constexpr double kMergeNormal = 0.2;
@@ -86,8 +86,9 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   }
 
  private:
-  /// Returns the height (negative, m) of a point inside b under the surface of b, and the gradient there. The
-  /// surface point is found by bisection along the thin axis, from the point away from the middle of b.
+  /// Returns the height (m, negative) of a point inside b relative to the surface of b. Sets the gradient of
+  /// f at a surface point. Bisection finds this surface point along the thin axis, from the point inside b in
+  /// the direction away from the middle of b.
   double across(const Vec3<double>& in_b, Vec3<double>& gradient) const {
     const Vec3<double> out = (in_b[thin_axis_] < 0 ? -1.0 : 1.0) * Vec3<double>::Unit(thin_axis_);
     double inside = 0, outside = thickness_;
@@ -304,7 +305,8 @@ void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, do
                std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
 }
 
-/// Appends the contact of a ball and a box; returns false if the pair is not of this kind.
+/// Appends the contact of a ball and a box if its gap is at most max_gap (m). Returns whether the pair is a
+/// ball and a box.
 bool ContactFinder::find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
                                      std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -327,7 +329,8 @@ bool ContactFinder::are_apart(int a, int b, double max_gap) const {
   return d.squaredNorm() - extent(one) - extent(other) > max_gap * d.norm();
 }
 
-/// Appends the contacts of a pair. Both surfaces are searched; a point found from both is added once.
+/// Appends the contacts of a pair of parts. Boxes, balls on boxes and deep overlaps have closed forms. For
+/// all others both surfaces are searched; a point found from both is added once.
 void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, max_gap)) return;
@@ -366,9 +369,9 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   found.insert(found.end(), ours.begin(), ours.end());
 }
 
-/// Finds the pairs of parts whose boxes are at most max_gap (m) apart and of which at least one part is
-/// marked. The pairs of enlarged boxes are kept from call to call. They are valid while each box is inside
-/// its enlarged box.
+/// Finds the pairs of parts whose boxes are at most max_gap (m) apart. marked: if given, at least one part of
+/// each pair is marked. The pairs of enlarged boxes are kept from call to call. They are valid while the box
+/// of each part, enlarged by half of max_gap, is inside the enlarged box.
 void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* marked) const {
   Scratch& s = *scratch_;
   s.boxes.clear();

@@ -53,8 +53,8 @@ Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
   return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
 }
 
-/// Returns a box in the world that contains a part. For a part with dynamic parameters that is no ellipsoid,
-/// it is the box of the ball of radius `reach`.
+/// Returns a box in the world that contains a part. If the part has dynamic parameters and is no ellipsoid,
+/// it is the box of a ball of radius Placed::reach.
 Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);

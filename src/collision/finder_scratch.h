@@ -12,8 +12,8 @@
 
 namespace pliant {
 
-/// Largest distance of the surface from the box of its sample points, in sizes of the part (Part::size(), its
-/// largest half extent).
+/// Largest distance by which the surface of a part is outside the box of its sample points, in sizes of the
+/// part (Part::size(), its largest half extent).
 inline constexpr double kBulge = 0.05;
 
 /// A part and its pose.
@@ -25,7 +25,7 @@ struct ContactFinder::Placed {
   double reach;                               ///< radius of a ball about c that contains the part, m
   std::optional<Vec3<double>> axes;           ///< semi-axes of an ellipsoid, m
   std::optional<Vec3<double>> half;           ///< half sizes of a box, m
-  bool points_current = false;                ///< whether Scratch::points belong to the parameters in use
+  bool points_current = false;                ///< whether Scratch::points belongs to the present parameters
 
   /// Velocity of a point (world) by the prescribed motion, m/s, world.
   Vec3<double> frame_velocity(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
@@ -39,16 +39,16 @@ struct ContactFinder::Scratch {
     bool acts;
     Vec3<double> point, prescribed_velocity;
   };
-  std::vector<PlaneNow> planes;  ///< planes at the time of the search; carried: velocity, m/s, world
+  std::vector<PlaneNow> planes;  ///< planes at the time of the search: a point (m) and the velocity (m/s)
   MeshSearch mesh_search;
   /// A ball that contains a part during a step.
   struct Ball {
-    Vec3<double> c, c_dot;
+    Vec3<double> c, c_dot;       ///< origin of the frame, m, and its velocity at the start of the step, m/s
     Vec3<double> c_dot_change;   ///< mean of c_dot over the step less c_dot at its start, m/s
-    double speed, speed_change;  ///< bound of the speed of a point relative to the frame's origin, m/s
+    double speed, speed_change;  ///< bounds of the speed of a point relative to c, and of its increase, m/s
     double reach;                ///< radius including the motion in the step, m
 
-    /// Bound of the speed of any point, m/s.
+    /// Bound of the speed of any point in the step, m/s.
     double fastest() const { return c_dot.norm() + c_dot_change.norm() + speed + speed_change; }
   };
   std::vector<Ball> balls;

@@ -15,7 +15,7 @@ namespace {
 
 /// Largest rotation of a part over a plane in a step, rad: its points may move by this times its reach.
 constexpr double kMaxTurnOverPlane = 0.5;
-/// A step that is done is kept if a motion exceeds its limit by at most this factor.
+/// A step that is done is kept if no motion is larger than its limit times this factor.
 constexpr double kToleratedTravel = 1.125;
 
 /// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,
@@ -70,9 +70,9 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   ball.reach += h * (ball.fastest() + spare);
 }
 
-/// Returns two bounds at the current velocities: the speed of a part seen from the rotating frame of another
-/// part, m/s, and the increase of this speed by the rotation of that frame, m/s^2. They are small for a part
-/// that rests on a turning part. Neither motion may be prescribed.
+/// Returns two bounds at the current velocities. The first is the speed of a part in the rotating frame of
+/// another part, `from`, m/s. The second is the rate at which the rotation of that frame increases this
+/// speed, m/s^2. Both are small for a part that rests on a turning part. Neither motion may be prescribed.
 std::pair<double, double> ContactFinder::relative_speed(const State& state, int part, int from) const {
   struct Motion {
     Vec3<double> c_dot, omega;
@@ -93,8 +93,8 @@ std::pair<double, double> ContactFinder::relative_speed(const State& state, int 
           b.omega.cross(against).norm()};
 }
 
-/// Returns a lower bound of the distance between two parts, m: the distance between the ball of one and the
-/// box of the other. ball, box: their part numbers.
+/// Returns a lower bound of the distance between two parts, m: the distance between the ball of one part and
+/// the box of the other; 0 if they overlap. ball, box: the numbers of these parts.
 double ContactFinder::clearance(int ball, int box) const {
   const Placed &a = scratch_->parts[at(ball)], &b = scratch_->parts[at(box)];
   const double bulge = kBulge * model_->parts()[at(box)].part->size();
@@ -124,7 +124,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood_of(const State& state,
 }
 
 // Longer than 60 lines, because planes, obstacles and pairs update one result in this order. The search of
-// pairs is skipped if it cannot change that result.
+// pairs is skipped if no pair can change that result.
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, const State* after, double t,
                                                           double h, double reach) const {
   Neighbourhood near;

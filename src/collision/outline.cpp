@@ -13,8 +13,9 @@ namespace pliant {
 
 namespace {
 
-/// Contacts belong to one face if their normals differ by at most kOneNormal and their gaps differ by at most
-/// kOnePlane, in sizes of the smaller part, from a linear function of the position on the face.
+/// Contacts belong to one face on two conditions. Their normals differ by at most kOneNormal. Their gaps
+/// differ from a linear function of the position on the face by at most kOnePlane, in sizes of the smaller
+/// part.
 constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
 /// A point of the hull is a corner of the outline if its distance from the chord of its neighbours exceeds
 /// this, in sizes.

@@ -1,4 +1,5 @@
-// Contacts of boxes against closed forms; no direction separates two boxes by more than the reported gap.
+// Contacts of boxes are compared with closed forms. No direction separates two boxes by more than the
+// reported gap.
 #include "catch.h"
 
 #include <algorithm>
@@ -131,7 +132,8 @@ TEST_CASE("a ball touches a box at its nearest point: of a face, an edge or a co
   check({0.51, 0.42, -0.32}, {1, 2, -2}, 0.03 - 0.2);
   check({0.1, 0.1, -0.25}, {0, 0, -1}, -0.05 - 0.2);
   check({0.5, 0.1, 0.1}, {1, 0, 0}, -0.2);
-  // The contact point on the box is the nearest one; from inside, the normal is the shortest way out.
+  // The contact point on the box is the point nearest to the ball. For a centre inside the box, the normal is
+  // the shortest way out.
   Draws draws(9);
   for (int i = 0; i < 200; ++i) {
     const Vec3<double> at(draws.uniform(-0.8, 0.8), draws.uniform(-0.7, 0.7), draws.uniform(-0.6, 0.6));

@@ -1,5 +1,5 @@
-// Contacts against closed forms; the closed forms of ellipsoids against the search for other shapes; the
-// broad phase against all pairs.
+// Contacts are compared with closed forms, the closed forms of ellipsoids with the search for other shapes,
+// and the pairs of the broad phase with all pairs of near boxes.
 #include "catch.h"
 
 #include <algorithm>
@@ -63,8 +63,8 @@ TEST_CASE("the lowest point of an ellipsoid over a plane", "[contact]") {
 }
 
 TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane", "[contact]") {
-  // A contact on a rim is at a vertex of the sample mesh or between two vertices. It is above the lowest
-  // point by up to 3e-4 of the extent of the part.
+  // A contact on a rim is at a vertex of the sample mesh or between two vertices. It may be above the lowest
+  // point of the part; `above` is the largest allowed height, m.
   struct Kind {
     const char* shape;
     Part::Named rest;
@@ -138,7 +138,8 @@ TEST_CASE("an ellipsoid and a ball: the error of the gap is of second order, for
       CHECK((found[0].normal - (ball_first ? n : -n)).norm() < 2 * (sharp + 1 / r) * std::abs(gap) + 1e-13);
       CHECK((found[0].x - x).norm() < 20 * std::abs(gap) + 1e-13);
     }
-    // From 1e-3 to 1e-4 the error falls by a factor of 100, unless one side of the pair is exact.
+    // From a gap of 1e-3 to a gap of 1e-4 the error falls by a factor of 100. If the gap is measured from the
+    // ball, for which the formula is exact, both errors are rounding.
     CHECK(errors[1] < 0.03 * errors[0] + 1e-13);
     CHECK(errors[3] < 0.03 * errors[2] + 1e-13);
   }

@@ -1,6 +1,6 @@
-// A tree over axis-aligned boxes that finds all pairs of nearby boxes. Each node is split at the median of
-// the box centres along the longest side of their bounds. The cost is O(n log n) for boxes of any sizes
-// unless many boxes overlap each other.
+// A tree over axis-aligned boxes that finds all pairs of nearby boxes. A node with more than four boxes is
+// split at the median of their centres, along the longest side of the box that contains these centres. The
+// cost is O(n log n) for boxes of any sizes unless many boxes overlap each other.
 #pragma once
 
 #include <utility>

@@ -22,7 +22,8 @@ class CollisionSurface {
    public:
     virtual ~Field() = default;
     virtual double height(const Vec3<double>& p) const = 0;  ///< m
-    /// Returns a cheaper function with the zeros of height(), m. The search minimises it.
+    /// Returns the value of a cheaper function that is zero where height() is zero, m. The search minimises
+    /// this function.
     virtual double descent(const Vec3<double>& p) const = 0;
   };
   /// The height over a plane. normal: unit vector, body frame; offset: height of the origin of the frame, m.
@@ -50,8 +51,8 @@ class CollisionSurface {
   /// the height.
   LowPoint ellipsoid_point(const ParameterValues<double>& values, const Vec3<double>& axes,
                            const Vec3<double>& y) const;
-  /// Radius of a ball about the origin of the frame that contains the part, m. For a part with dynamic
-  /// parameters that is no ellipsoid it is estimated from few points.
+  /// Returns the radius of a ball that is centred at the origin of the frame and contains the part, m. If the
+  /// part has dynamic parameters and is no ellipsoid, the radius is estimated from few points.
   double reach(const ParameterValues<double>& values) const;
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
@@ -63,9 +64,9 @@ class CollisionSurface {
   /// Sample points of the rest shape, and a box that contains the surface of the rest shape, body frame, m.
   const Eigen::Matrix3Xd& rest_points() const { return samples().points; }
   const Eigen::AlignedBox3d& rest_box() const { return samples().box; }
-  /// Returns the points that support the part: the lowest point and the outermost points of a level edge or
-  /// face. None is higher than max_gap (m). A level face has up to four, so that boxes stand. p: the sample
-  /// points, as columns in the body frame, m; heights: field.height() at each of them, m.
+  /// Returns the points that support the part: the lowest point, and the outermost points of a level edge
+  /// (two) or of a level face (about four), so that boxes stand. No point is higher than max_gap (m). p: the
+  /// sample points, as columns in the body frame, m. heights: field.height() at each sample point, m.
   std::vector<LowPoint> low_points(const ParameterValues<double>& values, const Eigen::Matrix3Xd& p,
                                    const VecX<double>& heights, double max_gap, const Field& field) const;
 
@@ -79,12 +80,15 @@ class CollisionSurface {
     std::vector<Material<double>> coarse;  ///< points that estimate reach() of a part with dynamic parameters
   };
   const Samples& samples() const;
-  /// Minimises field.descent() from sample point i. The search stays between the neighbours of that point.
+  /// Minimises field.descent() from sample point i. The search stays within one spacing_ of this point, in
+  /// longitude within two.
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
   mutable std::optional<Samples> samples_;
-  double spacing_;  ///< angle between neighbouring sample points, rad
+  /// Unit of the search, rad: twice the angle between neighbouring sample points of a ball pattern; on a
+  /// torus the angle between neighbours around the tube.
+  double spacing_;
   double thickness_;
 };
 

@@ -9,19 +9,19 @@ namespace pliant {
 
 /// One side of a contact: a material point of a part. If the part deforms locally, the side is a point
 /// between up to three nodes of its mesh. In a deep overlap of two parts the contact acts on each part as a
-/// whole; the side then has no nodes.
+/// whole; the side then has no nodes. The material point is set if the velocity of the side depends on it.
 struct ContactSide {
   int part = -1;                                ///< number of the part; -1 for a plane or an obstacle
-  Material<double> material;                    ///< material point of the part; not set if at_nodes()
+  Material<double> material;                    ///< material point of the part; not used if at_nodes()
   std::array<int, 3> node{-1, -1, -1};          ///< mesh nodes that define the point; -1: unused entry
-  Vec3<double> weight = Vec3<double>::UnitX();  ///< weights of these nodes; their sum is 1
+  Vec3<double> weight = Vec3<double>::UnitX();  ///< weights of the mesh nodes; their sum is 1
 
   bool at_nodes() const { return node[0] >= 0; }
 };
 
 struct Contact {
   ContactSide a, b;                            ///< side b may be a plane or an obstacle
-  int plane = -1, obstacle = -1;               ///< number of that plane or obstacle
+  int plane = -1, obstacle = -1;               ///< number of the plane or obstacle of side b; -1: none
   Vec3<double> x = Vec3<double>::Zero();       ///< contact point, m, world
   Vec3<double> normal = Vec3<double>::Zero();  ///< unit vector from b to a, world
   double gap = 0;                              ///< m; negative: depth of the overlap
@@ -29,8 +29,8 @@ struct Contact {
   /// motion of a plane or of a part with prescribed motion.
   Vec3<double> prescribed_velocity = Vec3<double>::Zero();
   double friction = 0, restitution = 0;
-  /// Time since the impulse of this contact acted, s. The positions of the pushed parts change by this time
-  /// multiplied by the change of their velocities.
+  /// Time since the impulse of this contact acted, s. The impulse changes the positions of the pushed parts
+  /// by this time multiplied by the change of their velocities.
   double since = 0;
   /// Least normal velocity with which the sides separate after the impulse, m/s.
   double rebound = 0;

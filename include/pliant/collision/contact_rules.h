@@ -23,8 +23,8 @@ double smaller_size(const Model& model, const Contact& contact);
 class ContactRules {
  public:
   /// model: must outlive this object. Throws std::invalid_argument for numbers out of range, for unknown
-  /// names, for a name that is used twice, for a group inside a group, and for a pair of one thing with
-  /// itself.
+  /// names, for a name that is used twice, for a group inside a group, and for a pair of a part, plane or
+  /// obstacle with itself.
   explicit ContactRules(const Model& model);
 
   /// Returns the rule of two parts, in any order.
@@ -43,7 +43,8 @@ class ContactRules {
 
   const Model* model_;
   int n_parts_, n_planes_;
-  // Parts, planes, obstacles and groups are numbered together, in this order. Pairs of numbers are sorted.
+  // Parts, planes, obstacles and groups are numbered together, in this order. The first number of a pair is
+  // the smaller one.
   std::vector<std::vector<int>> groups_of_;       // groups of each part, plane and obstacle
   std::map<std::pair<int, int>, int> last_pair_;  // two numbers -> index of the last pair that names both
   std::set<std::pair<int, int>> joined_;          // parts that share a joint

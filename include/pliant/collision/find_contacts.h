@@ -1,5 +1,6 @@
 // Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
-// other. The contacts are the lowest points of each part over planes, obstacles and the parts near it.
+// other. The contacts of most shapes are the lowest points of each part over planes, obstacles and the parts
+// near it. Ellipsoids, boxes, and balls on boxes have closed forms.
 #pragma once
 
 #include <memory>
@@ -22,38 +23,40 @@ class ContactFinder {
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
 
-  /// Meshes of the obstacles, in the order of the settings; references stay valid as long as this object.
+  /// Meshes of the obstacles, in the order of the settings. References are valid as long as this object
+  /// exists.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). Contacts at which
-  /// neither side can move, because it is immobile or sleeps, are left out. marked: one entry for each part;
-  /// if given, only contacts with at least one marked part are found. Order: part by part, first planes and
-  /// then obstacles; after these all pairs of parts.
+  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). Contacts are left out
+  /// if neither side can move, because each side is immobile or sleeps. marked: one entry for each part; if
+  /// given, only contacts with at least one marked part are found. Order: part by part, first planes and then
+  /// obstacles; after these all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
                             const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Velocity of side a relative to side b at a contact, m/s, world. It includes prescribed motion
-  /// (`carried`).
+  /// Velocity of side a relative to side b at a contact, m/s, world. It includes the prescribed motion
+  /// (Contact::prescribed_velocity).
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// Returns the largest admissible depth of a contact, m. The search may find a deeper contact on the far
-  /// side of the thinner part, where the normal is wrong. Only for parts without local deformation.
+  /// Returns the largest admissible depth of a contact, m: kMaxTravelShare of the thickness of its thinner
+  /// part. The search may find a deeper contact on the far side of this part, where the normal is wrong. Only
+  /// for parts without local deformation.
   double max_resolved_depth(const Contact& contact) const;
-  /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
-  /// one.
+  /// Largest motion of two touching parts relative to each other in a step, as a share of the thickness of
+  /// the thinner part.
   static constexpr double kMaxTravelShare = 0.4;
   /// Result of the search before a step: whether anything can touch during the step, and its largest length.
   struct Neighbourhood {
     bool empty = true;  ///< nothing can touch during the step
-    bool soft = false;  ///< parts that deform locally may touch something
-    double h = 0;       ///< largest step in which no part passes through another, s
+    bool soft = false;  ///< parts that deform locally may touch something; MeshFinder::approach() sets it
+    double h = 0;       ///< largest step in which no part passes through another part or an obstacle, s
     /// Distance that each part may move beyond the prediction without changing this result, m.
     double spare = 0;
 
     /// Reduces spare. Reduces h if two sides move relative to each other by more than max_travel (m) in a
-    /// step of `whole` seconds. travel: their motion at the velocities of the start, m; change: the
-    /// additional motion by the change of these velocities, m. done: whether the step is already done; a
-    /// small excess is tolerated then.
+    /// step of `whole` seconds. travel: their motion at the velocities of the start, m. change: the
+    /// additional motion by the change of these velocities, m. done: whether the step is already done; then
+    /// an excess of one eighth of max_travel is tolerated.
     void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
   /// Returns the neighbourhood of a coming step from time t (s) of h seconds. reach: the displacement by a
@@ -61,11 +64,12 @@ class ContactFinder {
   /// Integrator). The only predicted force is gravity.
   Neighbourhood neighbourhood(const State& state, double t, double h, double reach = 0.5) const;
   /// Returns the neighbourhood of a step that has led to the state `after`. foreseen: the result of
-  /// neighbourhood() for this step or a longer one. It is returned if no part moved beyond foreseen.spare.
+  /// neighbourhood() for this step or a longer one. `foreseen` is returned if the motion of no part exceeded
+  /// the prediction by more than foreseen.spare.
   Neighbourhood neighbourhood_of(const State& state, const State& after, double t, double h, double reach,
                                  const Neighbourhood& foreseen) const;
-  /// Returns the least gap between the two sides of a contact, m. It is at most max_gap. Over an obstacle it
-  /// is also at most a tenth of the size of the part.
+  /// Returns the least gap between the two sides of a contact at a state and a time t (s), m; max_gap if the
+  /// least gap is larger. Over an obstacle the result is also at most a tenth of the size of the part.
   double min_gap(const State& state, double t, const Contact& contact, double max_gap) const;
 
  private:

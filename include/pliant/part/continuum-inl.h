@@ -119,7 +119,7 @@ struct DualStrain {
   Mat3<DualPack> F, F_dot;
   std::array<Mat3<DualPack>, kMaxGlobal> dF;
 
-  /// second: d2F[unit_k e_k, direction] of the pack for each parameter k.
+  /// second: second(k) is d2F[unit_k e_k, direction] of the pack, with the unit vector e_k of parameter k.
   template <class Second>
   void set(const Mat3<Pack>& F_now, const std::array<Mat3<Pack>, kMaxGlobal>& dF_now, const Second& second,
            const SplitMotion& motion, const VecMax<double>& unit) {
@@ -153,8 +153,8 @@ Mat3<DualPack> damped_stress(const Law& law, const DualStrain& at, double beta, 
 
 PLIANT_INLINE const std::vector<ContinuumLawInfo>& all_continuum_laws() {
   static const std::vector<ContinuumLawInfo> all{
-      {"elastic", "Linear elasticity, for small changes of the parameters that rotate the material little.",
-       false},
+      {"elastic",
+       "Linear elasticity, for small changes of the parameters with little rotation of the material.", false},
       {"st_venant_kirchhoff", "St. Venant-Kirchhoff elasticity, for any rotation.", false},
       {"neo_hookean", "Rubber, for any rotation.", false},
       {"st_venant_kirchhoff_membrane", "A thin sheet that resists stretch, for any rotation.", true},

@@ -3,7 +3,8 @@
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
-// with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants instead of a matrix K_s. F
+// with P_v = F S(Gdot): S is Hooke's stress and Gdot the rate of Green's strain (local/solid/hooke.h). For
+// linear elasticity P_v is the stress of Fdot. The user gives material constants instead of a matrix K_s. F
 // and its derivatives come from dual numbers: the dual part of a material point is a direction in the rest
 // body. The rest shape is that of time 0.
 #pragma once
@@ -25,7 +26,8 @@ namespace pliant {
 class Part;
 struct Counters;
 
-/// A law by its name in all_continuum_laws(), and the constants of the material.
+/// A law by its name in all_continuum_laws(), and the constants of the material. Laws of solids do not use
+/// the thickness.
 struct ContinuumSettings {
   std::string law = "neo_hookean";
   double E = 0;          ///< Young's modulus, Pa
@@ -51,8 +53,8 @@ struct StrainPoints {
   int directions = 3;
   std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
   /// Relative change of the integrals when the points are doubled once more, at least kStrainTolerance; 0 for
-  /// "affine". It is kStrainTolerance too if finer rules did not reduce a change of at most 100
-  /// kStrainTolerance.
+  /// "affine". The value is also kStrainTolerance if the change is at most 100 kStrainTolerance and finer
+  /// rules did not halve it.
   double relative_error = 0;
 };
 
@@ -123,8 +125,9 @@ ContinuumLaw continuum_law(const ContinuumSettings& settings);
 /// The strain energy of a part.
 class ContinuumEnergy {
  public:
-  /// volume: volume of a solid (m^3) or area of a shell (m^2) at rest. Throws std::invalid_argument if the
-  /// search for quadrature points does not converge; the message names the parameters.
+  /// volume: volume of a solid (m^3) or area of a shell (m^2) at rest. Throws std::invalid_argument as
+  /// continuum_law() does, and if the search for quadrature points does not converge; that message names the
+  /// parameters.
   ContinuumEnergy(const Part& part, const ContinuumSettings& settings, double volume);
 
   const ContinuumSettings& settings() const { return settings_; }
@@ -137,14 +140,15 @@ class ContinuumEnergy {
   /// of a solid is turned inside out at a quadrature point.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
-  /// The same function with derivatives along the direction of the dual parts of q_s and q_s_dot.
+  /// Adds these forces and returns this power with their derivatives along the direction of the dual parts of
+  /// q_s and q_s_dot.
   Dual<1> add_force(const Part& part, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, double beta,
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
   /// Returns the exact d2E/dq_s2, n_s x n_s.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
   /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
   /// positive semidefinite. If W is quadratic in the strain, it is stiffness() without the geometric
-  /// stiffness, which is the part due to second derivatives of the strain.
+  /// stiffness (the terms with second derivatives of the strain).
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:

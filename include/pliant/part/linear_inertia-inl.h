@@ -55,8 +55,8 @@ void LinearInertia::fill(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const V
   const Blocks<P> s_sk = sum_s_sk(q_s);
   const Mat3<P> ss = fill_mass_matrix(q_s, s_sk, out.M, out.moment);
   out.mass = mass_;
-  // Eq. (11): g_q = -sum m G^T b with b = omega x (omega x s) + 2 omega x s1 and s1 = J q_s_dot = sum s_k
-  // q_k_dot.
+  // Eq. (11): g_q = -sum m G^T b with b = omega x (omega x s) + 2 omega x s1. The rate of s is
+  // s1 = J q_s_dot = sum s_k q_k_dot.
   const Mat3<P> spin = skew(omega), spin2 = spin * spin;
   Vec3<P> s1 = Vec3<P>::Constant(P(0.0));
   Mat3<P> s_s1 = Mat3<P>::Constant(P(0.0));

@@ -24,7 +24,7 @@ struct Parameter {
   double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
   Range limits;  ///< lower and upper limit of a dynamic parameter; each is a one-sided constraint
-  bool initial_given = false, limits_given = false;  ///< whether the user set initial and limits
+  bool initial_given = false, limits_given = false;  ///< whether the user set `initial`, and `limits`
 
   /// The rest value at time 0.
   double rest_value() const { return rest.value(0); }

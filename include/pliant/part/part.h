@@ -18,8 +18,8 @@ namespace pliant {
 class Part : public PartEvaluation {
  public:
   /// Computes the constants of the part. Returns at once if nothing has changed since the last call. Throws
-  /// std::invalid_argument if the description contradicts itself, or if the part folds over at its rest or
-  /// initial values.
+  /// std::invalid_argument if the description contradicts itself, if the part folds over at its rest or
+  /// initial values, or if its mass points, its elasticity or its local deformation cannot be made.
   void prepare();
   bool prepared() const { return !changed(); }
 
@@ -27,9 +27,9 @@ class Part : public PartEvaluation {
 
   /// Number of local coordinates.
   int n_d() const { return constants_.local ? static_cast<int>(constants_.local->n_d()) : 0; }
-  /// Number of velocities: linear, angular, dynamic parameters, local coordinates.
+  /// Number of velocities: linear, angular, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_v() const { return fixed() ? 0 : 6 + n_s() + n_d(); }
-  /// Number of coordinates: position, quaternion, dynamic parameters, local coordinates.
+  /// Number of coordinates: position, quaternion, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_q() const { return fixed() ? 0 : 7 + n_s() + n_d(); }
 
   const MassPoints& mass_points() const { return constants_.mass_points; }
@@ -39,8 +39,9 @@ class Part : public PartEvaluation {
   /// The largest absolute coordinate of the surface at rest in the body frame, m, from a sample of its
   /// points.
   double size() const { return constants_.size; }
-  /// Returns the largest diagonal entry of M of the k-th dynamic parameter that may be a rounding error for a
-  /// part of this mass and size (kg for a length, else kg m^2). Only larger entries are an inertia.
+  /// Returns the threshold of inertia of the k-th dynamic parameter (kg for a length, else kg m^2). A
+  /// diagonal entry of M up to this value may be a rounding error for a part of this mass and size. A larger
+  /// entry is an inertia.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.

@@ -1,5 +1,5 @@
-// The description of a part: everything that the user sets. It is the first base class of Part (part.h),
-// which inherits the setters. Part::prepare() computes the constants of the part from this description.
+// The description of a part: everything that the user sets. Part (part.h) inherits these setters by way of
+// PartEvaluation. Part::prepare() computes the constants of the part from this description.
 #pragma once
 
 #include <memory>
@@ -28,9 +28,9 @@ class PartDescription {
   PartDescription(const PartDescription&) = delete;
   PartDescription& operator=(const PartDescription&) = delete;
 
-  // The setters. Each returns the part, so that calls chain. Each throws std::invalid_argument, which names
-  // the part, the parameter, the value and the allowed values, and std::logic_error while a Model uses the
-  // part.
+  // The setters. Each returns the part, so that calls chain. For an impossible argument each throws
+  // std::invalid_argument; the message names the part and, where there are any, the parameter, the value and
+  // the allowed values. While a Model uses the part each throws std::logic_error.
 
   /// Sets the position of the frame (m, world) and its orientation (body to world; normalised here).
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
@@ -49,7 +49,8 @@ class PartDescription {
   /// Sets a symmetric block of K_s over the named parameters, and makes them dynamic.
   Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
   /// Sets the lower and the upper limit of a dynamic parameter. Each limit is a one-sided constraint.
-  /// prepare() checks the limits against the range that the rest value of the parameter allows.
+  /// prepare() checks that the limits are within the allowed range of the parameter, which is in multiples of
+  /// the rest value for some parameters.
   Part& limits(const std::string& parameter, Range range);
   /// Makes the part elastic: adds the strain energy of the map from the rest shape to the present shape to
   /// the energy of K_s. A part that deforms locally gets its elasticity from the laws of its local
@@ -60,7 +61,8 @@ class PartDescription {
   /// Makes parameters constants.
   Part& freeze(const std::vector<std::string>& parameters);
   /// Sets the damping D = alpha M_ss + beta K_s of the global parameters (alpha in 1/s, beta in s) and the
-  /// drag nu M on all motion (nu in 1/s). beta also multiplies the rate of strain of elastic material.
+  /// drag nu M on all motion (nu in 1/s). M_ss is the block of M over q_s. beta also multiplies the viscous
+  /// stress of elastic material.
   Part& damping(double alpha, double beta, double nu = 0);
   /// Puts the mass on the surface. The density is then per area (kg/m^2).
   Part& make_shell();
@@ -75,7 +77,8 @@ class PartDescription {
   Part& deform_locally(LocalSettings settings);
   /// Fixes the part: it does not move and has no coordinates.
   Part& fix();
-  /// Prescribes the motion of the part, which also sets its position. The part has no coordinates.
+  /// Prescribes the motion of the part. The motion also sets its position and orientation. The part has no
+  /// coordinates.
   Part& prescribe(PrescribedMotion motion);
 
   const std::string& name() const { return name_; }
@@ -145,7 +148,7 @@ class PartDescription {
   void change();
   /// Checks limits, rest value and initial value of a dynamic parameter, and that a frozen one is constant.
   void check_parameter(const Parameter& p) const;
-  /// Throws if the limits exceed the range that the rest value of the parameter allows.
+  /// Throws if the limits exceed the allowed range of the parameter, see limits().
   void check_limits(const Parameter& p) const;
   /// Throws if the strain energy of the material is not defined while parameter number i changes.
   void check_elastic_parameter(int i) const;

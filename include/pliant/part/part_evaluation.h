@@ -1,7 +1,7 @@
 // The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
 // J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the inverse map, and the mass matrix M and the inertial
-// forces g_q of Eq. (11). It is the second base class of Part (part.h). The function bodies are in
-// part_evaluation-inl.h (geometry) and inertia-inl.h (M and g_q).
+// forces g_q of Eq. (11). Part (part.h) derives from it. The function bodies are in part_evaluation-inl.h
+// (geometry) and inertia-inl.h (M and g_q).
 #pragma once
 
 #include <memory>
@@ -29,8 +29,8 @@ class PartEvaluation : public PartDescription {
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes only g_q, for a rigid part, from the fields M and moment of out, which evaluate_inertia() must
-  /// have computed. The fields other than g_q do not change.
+  /// Computes only g_q, for a rigid part, from the fields M and moment of out. These must already have the
+  /// values of the part. The fields other than g_q do not change.
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
   /// Computes position, J and rates of material points in the body frame. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,

@@ -1,6 +1,6 @@
-// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared
-// and for output. A step uses templates instead (shape_jets.h). shape/shape.h documents the members of a
-// shape; the optional ones have defaults here.
+// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared,
+// for contact search and for output. The dynamics uses templates instead (shape_jets.h). shape/shape.h
+// documents the members of a shape; the optional ones have defaults here.
 #pragma once
 
 #include <memory>
@@ -47,8 +47,8 @@ class ShapeInterface {
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
   /// Whether the strain stays bounded when an exponent changes. For the trigonometric map of superquadrics
-  /// the strain is unbounded: if eps changes from eps_0 to p eps_0, the deformation gradient grows as
-  /// |x|^(p - 1) at the coordinate planes.
+  /// the strain is unbounded: if eps changes from eps_0 to p eps_0 with p < 1, the deformation gradient grows
+  /// as |x|^(p - 1) towards a coordinate plane x = 0.
   virtual bool bounded_exponents() const = 0;
   /// Whether e is linear in the parameters that are lengths, for all values of the others.
   virtual bool linear_lengths() const = 0;
@@ -65,7 +65,7 @@ class ShapeInterface {
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
   /// Returns the exponent eps of the superellipse (C_v^eps, S_v^eps) that a ring (u, w) = const of the rest
-  /// map follows; 1 for an ellipse.
+  /// map follows, with C_v = cos v and S_v = sin v; 1 for an ellipse.
   virtual double ring_exponent(ShapeParameters a) const = 0;
   /// Whether the plane sections z = const of the shape are known in closed form.
   virtual bool has_sections() const = 0;

@@ -1,7 +1,6 @@
-// Deep overlap of two meshes, which can happen at the start of a run. The vertices of one
-// mesh are then nearer to the far side of the other. Contacts of single vertices and edges would have wrong
-// normals or make dents. The parts are separated as wholes along the direction n of least depth among a few
-// candidates,
+// Deep overlap of two meshes, which can happen at the start of a run. The vertices of one mesh are then
+// nearer to the far side of the other. Contacts of single vertices and edges would have wrong normals or make
+// dents. The parts are separated as wholes along the direction n of least depth among a few candidates,
 //   depth(n) = max_b n . x - min_a n . x,
 // over their vertices x.
 #include <algorithm>
@@ -19,10 +18,11 @@ namespace pliant {
 
 namespace {
 
-/// An overlap is deep if it exceeds kDeep times the thickness of the thinner part and kTravels times the
-/// distance by which the step can have moved the parts relative to each other.
+/// An overlap is deep if it exceeds both kDeep times the thickness of the thinner part and kTravels times the
+/// distance by which the last step can have moved the parts relative to each other.
 constexpr double kDeep = 0.06, kTravels = 2;
-/// The line between centres that are nearer than this, times the sum of the radii, is no candidate.
+/// The line of centres is a candidate only if the distance of the centres exceeds this, times the sum of the
+/// radii of the bounding balls.
 constexpr double kSameCentre = 1e-9;
 
 /// Whether a point is inside a closed mesh. Seen from an inside point, the solid angle of the mesh is 4 pi;
@@ -45,7 +45,8 @@ bool mesh_contains(const PlacedMesh& m, const Vec3<double>& x) {
 
 }  // namespace
 
-/// Bound of the motion of any point of a part in the last step relative to the origin of its frame, m.
+/// Returns a bound of the motion of any point of a part in the last step relative to the origin of its frame,
+/// m. The bound uses the velocities at the end of the step.
 double MeshFinder::local_travel(const State& state, double t, const BoundingBall& ball) const {
   const PartModel& m = model_->parts()[at(ball.part)];
   if (m.q0 >= 0)

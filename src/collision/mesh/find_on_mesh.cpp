@@ -13,8 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// Largest distance of the surface from its sample points, in sizes of the part (Part::size(), its largest
-/// half extent).
+/// Largest distance of the surface from the chords between its sample points, in sizes of the part
+/// (Part::size(), its largest half extent).
 constexpr double kSag = 0.02;
 /// Largest distance of a low point from the sample point that its search started from, in sizes.
 constexpr double kSpacing = 0.4;
@@ -22,20 +22,22 @@ constexpr double kSpacing = 0.4;
 constexpr double kMaxFaceDepth = 0.5;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
-/// A face does not support a point behind it that is nearer to another face. The other face is nearer if the
-/// distance to it is less than kNearerShare times the depth of the point behind the first face. Another face
-/// has this effect only if the cosine between both normals is above kMinCosine.
+/// A face does not support a point behind it that is nearer to a second face. The second face is nearer if
+/// its distance is less than kNearerShare times the depth of the point behind the first face. It has this
+/// effect only if the cosine between the normals of both faces is above kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
 /// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
 /// of the faces that meet there.
 constexpr double kMaxOutsideSine = 1e-3;
-/// Points along a ridge whose heights differ by at most this, in sizes, are equally low.
+/// Points along a ridge whose heights differ by at most this, in sizes, are equally low. A face supports a
+/// point that is at most this deep behind it, even if another face is nearer.
 constexpr double kLevelAlongRidge = 3e-6;
 /// Step for the one-sided slopes at a point of a ridge, in sizes.
 constexpr double kSideStep = 1e-7;
 /// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
 /// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
+/// Number of intervals between the samples along an edge, and of bisections around the lowest sample.
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
 constexpr double kSameContact = 0.02, kSameNormal = 0.01;

@@ -15,9 +15,10 @@ namespace pliant {
 
 namespace {
 
-/// Largest depth of a vertex behind an obstacle, as a share of the thickness of the part. A deeper vertex may
-/// be on the far side of the part, over a plate that supports the part. The motion of a part near an obstacle
-/// in a step is limited to kMaxStepShare of its thickness.
+/// kMaxDepthInObstacle: largest depth of a vertex behind an obstacle, as a share of the thickness of the
+/// part. A deeper vertex may be on the far side of the part, over a plate that supports the part.
+/// kMaxStepShare: limit of the motion of a part near an obstacle in a step, and of the deviation of an
+/// oscillating plane from its mean motion, as a share of the thickness of the part.
 constexpr double kMaxDepthInObstacle = 0.25, kMaxStepShare = 0.2;
 
 }  // namespace

@@ -27,8 +27,8 @@ constexpr double kTie = 1e-9;
 constexpr double kStraightAbove = 1e-6;
 /// An edge is not sharp if the sine of the angle between the normals of its triangles is at most this.
 constexpr double kNoTurn = 1e-6;
-/// The box of a part is enlarged by this share of the largest depth for the search of triangles of an
-/// obstacle.
+/// For the search of triangles of an obstacle, the box of a part is enlarged by this share of the largest
+/// depth that the search accepts.
 constexpr double kMargin = 0.1;
 /// Tolerance, as a sine, of the test that a normal at a corner of an obstacle points outward.
 constexpr double kOutwardSine = 1e-3;
@@ -71,9 +71,9 @@ struct Candidates {
 
 /// A convex edge.
 struct SharpEdge {
-  int from, to;
-  Vec3<double> p, along;
-  Vec3<double> n1, n2, n21;  ///< normals of its triangles, and n2 x n1
+  int from, to;              ///< vertices
+  Vec3<double> p, along;     ///< position of `from`, and the vector to `to`, m
+  Vec3<double> n1, n2, n21;  ///< normals of its two sides, see sharp_elements(); and n2 x n1
 };
 
 Vec3<double> normal_of(const PlacedMesh& m, int triangle) {
@@ -296,7 +296,8 @@ bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weigh
 
 /// Appends the overlaps of vertices of a that are behind triangles whose normals oppose the outward direction
 /// of the vertex. The outward direction is the sum of the area normals of the triangles of a at the vertex.
-/// For a plate these vertices and the centre of a are on opposite sides of the plate.
+/// For a plate these vertices and the centre of a are on opposite sides of the plate, and the line between
+/// them crosses the plate.
 void add_vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
                          std::vector<MeshTouch>& found) {
   std::vector<Candidates::Face> faces;

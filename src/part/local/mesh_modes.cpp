@@ -1,9 +1,10 @@
 // The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0, the
 // lowest modes x are the eigenvectors with the largest eigenvalues nu = 1/(omega^2 + sigma) of
 //   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
-// Curved elements use the consistent M: the error of omega is positive and of fourth order in the edge
-// length. Straight elements and shells use the lumped M, whose error has the opposite sign to that of their
-// stiffness.
+// Here K is the stiffness, M the mass matrix, and sigma a small shift (shift_of()) that makes K + sigma M
+// positive definite. Curved elements use the consistent M: the error of omega is positive and of fourth order
+// in the edge length. Straight elements and shells use the lumped M, whose error has the opposite sign to
+// that of their stiffness.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,8 +32,8 @@ using Sparse = SparseMatrix;
 
 /// Up to this number of coordinates the dense solver is faster.
 constexpr Eigen::Index kDense = 400;
-/// Maximum number of local coordinates: the factor of more of them needs gigabytes. kMaxNumbers: maximum
-/// number of entries of fields and modes.
+/// kMaxCoordinates: maximum number of displacement components of the nodes. The factor of a larger matrix
+/// needs gigabytes. kMaxNumbers: maximum number of entries of fields and modes.
 constexpr Eigen::Index kMaxCoordinates = 120'000;
 constexpr double kMaxNumbers = 5e7;
 
@@ -145,7 +146,7 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
   return 0.1 * min_omega2;
 }
 
-/// Returns the lowest modes from all eigenvectors of K', for few coordinates.
+/// Returns the lowest modes from all eigenvectors of K' (see Flexibility), for few coordinates.
 MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>& Q, Eigen::Index count) {
   const MatX<double> Z = complement_basis(Q), d = elasticity.mass.solve(Z);
   return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);

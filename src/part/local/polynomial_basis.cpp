@@ -1,6 +1,6 @@
-// Displacement polynomials over the body of a solid. The fields phi = T L are combinations of Legendre
-// products L that are orthonormal over the mass, and d phi / dX_r = Delta_r phi. The stiffness of linear
-// elasticity is then
+// Displacement polynomials over the body of a solid. The fields phi = T L are combinations of the Legendre
+// products L. These fields are orthonormal over the mass, and d phi / dX_r = Delta_r phi. With the volume V
+// and Lame's constants lambda and mu, the stiffness of linear elasticity is then
 //   K_rs = V (lambda Delta_r Delta_s^T + mu Delta_s Delta_r^T + delta_rs mu sum_t Delta_t Delta_t^T),
 // without a quadrature of gradients.
 #include <algorithm>

@@ -24,8 +24,8 @@ namespace {
 
 /// Minimum volume of an element, relative to the cube of its longest edge.
 constexpr double kFlat = 1e-9;
-/// Maximum number of straight elements. Curved elements may be a quarter of this number. More elements would
-/// need more than a few gigabytes.
+/// Maximum number of linear elements. The maximum of quadratic and enriched elements is a quarter of this
+/// number. More elements would need more than a few gigabytes.
 constexpr double kMaxElements = 2e6;
 
 /// Corner nodes and elements. The first nodes are the vertices of the surface.
@@ -36,7 +36,8 @@ struct Corners {
   std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
-/// Returns the material point in the direction g of the mesh pattern with the radial coordinate w.
+/// Returns the material point with the radial coordinate w in the direction g, or at the angles g of a torus
+/// (ShapeInterface::mesh_label()).
 struct Labels {
   const ShapeInterface& shape;
   ShapeParameters a;
@@ -225,8 +226,8 @@ class ElementNodes {
       triangle[3 + k] = node_between({triangle[k], triangle[(k + 1) % 3]}, corners_.middle);
     if (enriched) triangle[6] = node_between({triangle[0], triangle[1], triangle[2]}, corners_.middle);
   }
-  /// Fills rows 4 to 9 of an element. An inner edge gets a node in the middle of its ends
-  /// in the undeformed shape.
+  /// Fills rows 4 to 9 of an element. The node of an inner edge is in the middle of its ends in the
+  /// undeformed shape.
   void add_edge_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     for (std::size_t k = 0; k < 6; ++k)
       element[static_cast<Eigen::Index>(4 + k)] =

@@ -12,12 +12,12 @@ namespace pliant {
 
 namespace {
 
-/// Number of nodes in a panel for each level of refinement. It doubles every two levels.
+/// Number of nodes in a panel for each level of refinement. It about doubles every two levels.
 constexpr std::array<int, 12> kBodySizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr std::size_t kLastBodyLevel = kBodySizes.size() - 3;
 /// Relative changes of the moments by refining. A rule whose change is at most kMomentTolerance has
-/// converged. A rule whose change is at most kAcceptableChange is used if two further levels do not improve
-/// it.
+/// converged. A rule whose change is at most kAcceptableChange is used if two further levels do not halve the
+/// change.
 constexpr double kMomentTolerance = 5e-14, kAcceptableChange = 1e-12;
 constexpr Eigen::Index kMaxBodyPoints = 2'000'000;
 

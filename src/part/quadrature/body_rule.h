@@ -14,7 +14,7 @@ struct BodyRule {
   std::vector<Material<double>> at;  ///< the points
   Eigen::Matrix3Xd X;                ///< positions of the points at rest, body frame, m
   VecX<double> volume;               ///< the weights, m^3
-  double remaining_change = 0;       ///< largest change of a moment by refining, relative to the volume
+  double remaining_change = 0;  ///< largest change of a moment by refining, over the volume; 0 if converged
 };
 
 /// Makes a rule for the integrals of all given products of Legendre polynomials. Throws std::invalid_argument

@@ -62,8 +62,8 @@ struct PlaneMoments {
   }
 };
 
-/// Returns a sine or cosine from its logarithm. The derivative of the logarithm stays finite where the value
-/// underflows.
+/// Returns a sine or cosine from the logarithm of its absolute value. The derivative of the logarithm stays
+/// finite where the value underflows.
 Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   const double value = sign * std::exp(log_abs);
   Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};

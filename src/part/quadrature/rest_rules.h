@@ -1,6 +1,7 @@
-// Quadrature over the rest shape of a part, direction by direction. A node is a slice, which is a plane
-// section z = const of a solid, or a ring of material points (u, w) = const. Each node yields mass points.
-// rule_search.h chooses the nodes.
+// Quadrature over the rest shape of a part, direction by direction. A rule consists of slices, which are
+// plane sections z = const of a solid, or of rings of material points (u, w) = const. Each slice or ring
+// yields mass points. A node is a point of the one-dimensional rule along z, u, v or w. rule_search.h chooses
+// the nodes.
 #pragma once
 
 #include <vector>
@@ -30,9 +31,10 @@ struct RestShape {
                       ///< ring
 };
 
-// Nodes along one direction. n: number of nodes in a panel; a periodic panel has twice as many.
+// Nodes along one direction. n: number of nodes in a panel. A periodic panel, and a panel of a fixed exponent
+// below 0.25, have twice as many.
 
-/// A plane section at zeta = z / h, and its weight.
+/// A plane section at zeta = z / h, and its weight. h: half height of the shape.
 struct SliceNode {
   double zeta, gap, weight;  ///< gap: 1 - |zeta|
 };

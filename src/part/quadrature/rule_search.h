@@ -25,7 +25,7 @@
 
 namespace pliant::rule_search {
 
-/// Number of nodes in a panel for each level of refinement. It doubles every two levels.
+/// Number of nodes in a panel for each level of refinement. It about doubles every two levels.
 inline constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 inline constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 inline int size_at(int level) {
@@ -57,6 +57,7 @@ class Draw {
 struct Column {
   std::vector<RestPoint> points;
   std::vector<Eigen::Index> node;  ///< number of the node of each point
+  /// Assigns the points that were appended since the last call to node number `which`.
   void end_node(Eigen::Index which) { node.resize(points.size(), which); }
 };
 /// Columns at several places; n_nodes is the number of nodes along the direction.
@@ -106,9 +107,10 @@ class StateRanges {
   std::vector<RangeOf> ranges_;
 };
 
-/// Returns the smallest level of refinement at which doubling changes no integral by more than kTolerance.
-/// If there is none, returns the best level if its change is at most kRequired. Else returns the last level
-/// and raises `remaining` to the smallest change found. columns(level) places the nodes.
+/// Returns the first level of refinement at which doubling changes no integral by more than kTolerance, or
+/// the first level whose change is at most kRequired and is not halved by the next two levels. If there is
+/// none, returns the last level and raises `remaining` to the smallest change found. columns(level) places
+/// the nodes.
 template <class Integrands, class MakeColumns>
 int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
@@ -180,7 +182,7 @@ inline constexpr std::size_t kMaxPoints = 2'000'000;
 struct PlacedPoints {
   std::vector<RestPoint> points;
   int level = 0;         ///< level of refinement along the last direction
-  double remaining = 0;  ///< the value of refine(): relative change by doubling; 0 if a level suffices
+  double remaining = 0;  ///< relative change by doubling, from refine(); 0 if a level suffices everywhere
 };
 
 inline void remove_massless(std::vector<RestPoint>& points) {
@@ -209,7 +211,8 @@ inline void add_ring(const RestShape& shape, const RingNode& ring, const std::ve
 template <class Integrands>
 class RingSearch {
  public:
-  /// thinned: whether to thin u and w. extra: levels of refinement beyond those that suffice.
+  /// thinned: whether to thin u and w; v is thinned if the points of a ring move independently. extra: levels
+  /// of refinement beyond those that suffice.
   RingSearch(const RestShape& shape, const Integrands& integrands, bool thinned, int extra)
       : shape_(shape), integrands_(integrands), thinned_(thinned), extra_(extra) {}
 

@@ -34,7 +34,8 @@ class ContactMesh {
   double reach(const Model& model, const State& state, int number) const;
   /// Whether reach() evaluates all vertices.
   bool reach_uses_all_vertices() const { return part_->local != nullptr; }
-  /// Largest speed of a point of the part relative to its frame, m/s; estimated as in reach().
+  /// Largest speed of a point of the part relative to its frame, m/s. It is estimated from the points that
+  /// reach() uses.
   double speed(const State& state) const;
 
  private:
@@ -47,8 +48,8 @@ class ContactMesh {
       coarse_;              // points for reach() of a part without nodes, with dynamic parameters
   Eigen::Matrix3Xd rigid_;  // vertices of a part of constant shape
   double rigid_reach_ = 0;  // largest distance of such a vertex from the origin of the frame, m
-  // Result of the last call of positions() for a part without nodes, with dynamic parameters; and q_s of that
-  // call.
+  // For a part without nodes and with dynamic parameters: the result of the last call of positions(), and q_s
+  // of that call.
   mutable Eigen::Matrix3Xd last_;
   mutable VecX<double> last_q_s_;
   Eigen::Matrix3Xd

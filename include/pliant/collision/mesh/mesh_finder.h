@@ -55,15 +55,17 @@ class MeshFinder {
                    const Vec3<double>& x) const;
   std::map<int, BoundingBall> balls(const State& state, double t) const;
   PlacedMesh place(const State& state, double t, const BoundingBall& ball) const;
-  /// Calls act(one, other, rule) for each pair of parts that may touch and whose balls meet. all: part number
-  /// -> thing; one and other are entries of this map. A Thing has the members part, c and reach of its ball.
+  /// Calls act(one, other, rule) for each pair of parts that may touch and whose balls meet. At least one
+  /// part of a pair deforms locally, and at least one moves. all: part number -> thing; one and other are
+  /// values of this map. A Thing has the members part (number of the part), c and reach (centre and radius of
+  /// its ball).
   template <class Thing, class F>
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
   double local_travel(const State& state, double t, const BoundingBall& ball) const;
-  /// Whether two parts overlap more deeply than their motion in the last step can explain, or one contains
-  /// the centre of the other. touches: the overlaps of their meshes. It has seven parameters because the
-  /// caller has computed the balls and the meshes already.
+  /// Whether one of two parts contains the centre of the other, or an overlap is deeper than a share of their
+  /// thickness and than their motion in the last step can explain. touches: the overlaps of their meshes. The
+  /// function has seven parameters because the caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
   /// Returns one contact that separates two parts in deep overlap.

@@ -25,9 +25,10 @@ struct MeshPoint {
   Vec3<double> weight = Vec3<double>::UnitX();
 };
 
+/// An overlap of two meshes at a point of each.
 struct MeshTouch {
   MeshPoint a, b;
-  Vec3<double> x;       ///< the vertex, or the point on the edge of a, m, world
+  Vec3<double> x;       ///< the overlapping vertex (of a or b), or the point on the edge of a, m, world
   Vec3<double> normal;  ///< unit vector out of b, world
   double gap;           ///< m, negative
 };
@@ -36,8 +37,8 @@ struct MeshTouch {
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
 /// Appends the overlaps of a mesh a with an obstacle b. If a vertex of the mesh is behind the obstacle,
 /// MeshTouch::b is not set. Overlaps deeper than `deepest` (m) are ignored, because such a vertex may be on
-/// the far side of the mesh. A vertex whose outward direction agrees with the normal of a triangle is not
-/// behind that triangle.
+/// the far side of the mesh. A vertex of the mesh is not behind a triangle of the obstacle if the outward
+/// direction of the mesh at the vertex agrees with the normal of the triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

@@ -23,7 +23,7 @@ class ObstacleMesh {
   ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
 
   struct Edge {
-    std::array<int, 2> vertex;    ///< triangle[0] is on its left, seen from the free side
+    std::array<int, 2> vertex;    ///< triangle[0] is on the left of the way from vertex[0] to vertex[1]
     std::array<int, 2> triangle;  ///< the second one is -1 at the border of an open mesh
     bool sharp;  ///< whether a part outside both faces can touch it: a convex edge or the border
   };
@@ -46,8 +46,9 @@ class ObstacleMesh {
   int face_of(int triangle) const { return face_of_[at(triangle)]; }
   /// Returns the edges that end in a vertex; empty if none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
-  /// Whether a unit vector at an edge or a vertex is in the normal cone there: it points away from all faces
-  /// that meet there. `sine` is the tolerance, as the sine of an angle.
+  /// Whether a unit vector at an edge or a vertex is in the normal cone there: its angle with every direction
+  /// along a face that meets there is at least 90 degrees. At a border it must also not point behind the
+  /// face. `sine` is the tolerance, as the sine of an angle.
   bool points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const;
   bool points_outward(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether the mesh has no border.

@@ -20,12 +20,12 @@ struct LocalMesh {
   VecX<double> mass;           ///< lumped mass of each node, kg
   double density = 0;          ///< kg/m^3 of a solid, kg/m^2 of a shell
   bool shell() const { return tetrahedra.cols() == 0; }
-  /// Returns a third of the area of the triangles at each node, m^2; 0 for nodes inside.
+  /// Returns for each node a third of the area of its triangles, m^2; 0 for nodes inside the body.
   VecX<double> areas() const;
 };
 
 /// Makes the mesh. Its nodal masses reproduce the mass, the centre and the second moments of the part. Throws
-/// LocalFault if no positive masses reproduce them.
+/// LocalFault if no positive masses reproduce them, and std::invalid_argument as Surface and Solid do.
 LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings);
 
 /// A material point as a weighted sum of nodes: d = sum weight_i d_i.

@@ -38,12 +38,13 @@ struct LocalFault : std::invalid_argument {
 };
 
 struct LocalSettings {
-  /// The basis S of d = S q_d, Eq. (5): displacements of the nodes of a mesh; displacement polynomials over
-  /// the body of a solid; the lowest modes of a mesh.
+  /// The basis S of d = S q_d, Eq. (5). nodes: q_d has the displacements of the nodes of a mesh. polynomial:
+  /// q_d has the amplitudes of modes of displacement polynomials over the body of a solid. modes: q_d has the
+  /// amplitudes of the lowest modes of a mesh.
   enum class Basis { nodes, polynomial, modes };
   Basis basis = Basis::nodes;
-  int degree = 4;      ///< degree of the polynomials, 1 to 10
-  int modes = 20;      ///< number of modes of a mesh
+  int degree = 4;      ///< polynomial: degree of the polynomials, 1 to 10
+  int modes = 20;      ///< modes: number of modes
   int resolution = 8;  ///< edges of the mesh along an eighth of a great circle, see Surface and Solid
   int order = 1;       ///< elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes (10 nodes for modes)
   using Law = LocalLaw;

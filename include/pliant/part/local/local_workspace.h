@@ -16,7 +16,7 @@ class LocalResponse {
   virtual ~LocalResponse() = default;
   /// Returns the compliance, see LocalDeformation::compliance().
   virtual MatX<double> compliance() const = 0;
-  /// Adds the change of the local rates by impulses g on (v_r, the attachment points) to d_dot.
+  /// Adds to d_dot the changes of the local rates that impulses g on (v_r, the attachment points) cause.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
   /// Replaces impulses on v_r and on all local coordinates by the changes of the velocities that they cause.
   virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
@@ -44,7 +44,7 @@ struct LocalWorkspace {
 
   // Joints.
   MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its pseudo-inverse
-  const LocalResponse* response = nullptr;  ///< if not nullptr, this response gives A
+  const LocalResponse* response = nullptr;  ///< if not nullptr, A is its compliance, not that of M^-1
 
   /// Sets d and d_dot to n local coordinates and their rates. The arrays must outlive the use of the
   /// workspace.

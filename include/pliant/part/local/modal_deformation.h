@@ -1,11 +1,13 @@
 // Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
 // modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so
-// the reference conditions hold for every q_d. With the coefficients p_a = s_a + d_a, J_a and e_a of p, of J
-// and of the constant 1 at the spectral nodes a (modal_basis.h), and with G_a = [e_a I, -[p_a]x, J_a],
+// the reference conditions of the rest shape hold for every q_d. Let p_a = s_a + d_a, J_a and e_a be the
+// coefficients of p, of J and of the constant 1 at the spectral nodes a (modal_basis.h), and let
+// G_a = [e_a I, -[p_a]x, J_a]. Then
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
-// f_r and f_d are the forces on (c, theta, q_s) and on q_d. The reference shape s is not in the span of the
-// fields phi; integrals of s alone are those of the part (part/inertia.h).
+// f_r and f_d are the forces on (c, theta, q_s) and on q_d. S is a Schur complement, not the shape matrix of
+// Eq. (5). The reference shape s is not in the span of the fields phi; integrals of s alone are those of the
+// part (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>
@@ -18,7 +20,7 @@ namespace pliant {
 struct ModalWorkspace final : LocalWorkspace {
   // Stage positions(), at the spectral nodes.
   Nodes D, D_dot;          ///< d and its rate
-  MatX<double> shape;      ///< blocks N x 3: reference shape s, J q_s_dot, Jdot q_s_dot, J of each parameter
+  MatX<double> shape;      ///< blocks N x 3: s, J q_s_dot, Jdot q_s_dot, and ds/dq_k of each parameter k
   MatX<double> at_points;  ///< these blocks at the points of the basis
   static constexpr Eigen::Index kS = 0, kS1 = 3, kS2 = 6, kJ = 9;  ///< first columns of the blocks
   auto s() const { return shape.middleCols<3>(kS); }
@@ -27,7 +29,7 @@ struct ModalWorkspace final : LocalWorkspace {
   auto J(Eigen::Index k) const { return shape.middleCols<3>(kJ + 3 * k); }
   // Stage masses().
   Inertia<double> undeformed;  ///< inertia of the part at d = 0
-  MatX<double> R;              ///< C = R^T B; R has no columns for c, whose rows in C are zero
+  MatX<double> R;              ///< R^T B has the rows of C for theta and q_s; the rows for c are zero
   MatX<double> M_rr, C;        ///< C: (6 + n_s) x n
   VecMax<double> scale;        ///< factors that scale the diagonal of M at d = 0 to 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< factorisation of scale S scale
@@ -36,7 +38,7 @@ struct ModalWorkspace final : LocalWorkspace {
   VecX<double> f_r;  ///< forces of inertia, gravity and drag on (c, theta, q_s)
   VecX<double> f_d;  ///< forces of elasticity, damping and drag on the modes
   // Joints.
-  MatX<double> P, C_P;  ///< modes at the attachment points; C P^T
+  MatX<double> P, C_P;  ///< P: modes at the attachment points. C_P: C P^T
 
   double condition() const override;
   /// Returns S^-1 b.

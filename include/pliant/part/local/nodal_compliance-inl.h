@@ -35,8 +35,9 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const Eigen::Index n = n_nodes(), n_r = w.H0.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
-  // Solve the equations of nodal_deformation.h for unit impulses. Each column of on_d is of_d - f for one
-  // impulse, and each column of loads is frame_force_all.
+  // Solve the equations of nodal_deformation.h for unit impulses on v_r and on the points, one in each
+  // column. on_d is sum G^T F_d - f of each impulse; an impulse at a point acts on d alone, one on v_r is f.
+  // loads is sum G0^T F.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();
   loads.rightCols(n_p) = G0.transpose();

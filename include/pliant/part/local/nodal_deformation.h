@@ -2,9 +2,9 @@
 // nodes, in the body frame of the part. The reference conditions are those of mean axes at the current shape
 // (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
-// Let F be all forces on the nodes, F_d the forces among them that act on d alone, and f_r the generalised
-// forces on (c, theta, q_s) besides those of the nodes. Then
-//   K kappa = sum G^T F_d - f_r,            K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
+// Let F be all forces on the nodes, F_d the forces among them that act on d alone, and f the generalised
+// forces on (c, theta, q_s) that are not forces on nodes. Then
+//   K kappa = sum G^T F_d - f,              K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
 //   m y = F - W kappa
 //   K^T a_r = sum W^T y + 2 sum Wdot^T d_dot + sum Wddot^T d
 //   d_ddot = y - G a_r
@@ -39,13 +39,15 @@ struct NodalWorkspace final : LocalWorkspace {
   /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
-  // Stage forces(), N.
-  VecX<double> x_dot;            ///< rates of x in the body frame, for damping
-  VecX<double> f, f_d;           ///< forces of the energies that depend on p; F_d, of those that depend on d
-  VecMax<double> frame_force_d;  ///< sum G^T F_d
+  // Stage forces(). Forces are in N.
+  VecX<double> x_dot;  ///< rates of x in the body frame, for damping
+  /// f: forces of the energies that depend on p. f_d: F_d, forces of the energies that depend on d, and the
+  /// damping by alpha.
+  VecX<double> f, f_d;
+  VecMax<double> frame_force_d;    ///< sum G^T F_d
   VecMax<double> frame_force_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
-  VecMax<double> kappa;
+  VecMax<double> kappa;  ///< multipliers of the reference conditions
   // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one in each column.
   MatX<double> kappa_response, a_response;
   // Scratch storage.

@@ -2,7 +2,7 @@
 // (nodal_deformation.h, and include/pliant/part/local/README.md):
 //   positions()        p = s + d, Eq. (2), in place_nodes()
 //   masses()           M of Eq. (11) at d = 0, and the reference conditions
-//   forces()           g_q of Eq. (11), gravity and drag; add_elasticity() adds -K q_d and its damping
+//   forces()           g_q of Eq. (11), gravity, drag; add_elasticity(): -K q_d of Eq. (11), damping
 //   push()             f_q = L^T f of a force at a material point, Eq. (11)
 //   accelerations()    a_r and d_ddot
 #pragma once
@@ -170,8 +170,8 @@ inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot
   if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
 }
 
-/// Scales K to a unit diagonal of H0 and factors it. A parameter without inertia gets a unit row and column
-/// instead, so that it has no acceleration.
+/// Factors K, scaled by the factors that scale the diagonal of H0 to 1. A parameter without inertia gets a
+/// unit row and column instead, so that it has no acceleration.
 inline void factor_conditions(const Part& part, int n_s, MatMax<double>& K, NodalWorkspace& w) {
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   w.without_inertia.reset();

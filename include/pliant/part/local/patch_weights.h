@@ -12,8 +12,9 @@ namespace pliant {
 
 /// Returns weights over the nodes within a radius (m) of the point at rest. A point of the surface uses the
 /// nodes of the surface, in proportion to their areas; any other point uses all nodes, in proportion to their
-/// masses. If the mesh has too few nodes within the radius, or if the nodes cannot reproduce X(m) by weights
-/// of moderate size, returns the weights of the element around the point.
+/// masses. A correction, for a solid at all nodes within the radius, makes the weights reproduce X(m). If
+/// there are fewer than five such nodes, or if no weights of moderate size reproduce X(m), returns
+/// mesh_weights(): the weights of the element or triangle around the point, empty inside a shell.
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius);
 
 }  // namespace pliant

@@ -3,13 +3,14 @@
 //
 // Balls use the lattice of a cube. Each cell is cut into six tetrahedra around the diagonal that points away
 // from the centre (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice
-// (ball_pattern.h) is the surface of resolution r at w = r / resolution. Tori use rings of 4n points at w = n
-// / resolution, with n = resolution, resolution - 2, ..., that are swept around the core ring. The core ring
-// is a line of nodes.
+// (ball_pattern.h) is the surface of resolution r at w = r / resolution. The section of a torus has rings of
+// 4n points at w = n / resolution, with n = resolution, resolution - 2, ..., and a point in the middle. The
+// section is swept around the axis; its middle then makes the core ring, a line of nodes.
 //
 // A quadratic element also has a node on each edge; the order is 0 1 2 3, then 01 12 20 03 13 23. Nodes on
-// edges of the boundary are material points of the surface. Nodes on inner edges are in the middle of the
-// edge in the undeformed shape. An enriched element also has a node on each face and one in the middle.
+// edges and faces of the boundary are material points of the surface. Nodes on inner edges are in the middle
+// of the edge in the undeformed shape. An enriched element also has a node on each face and one in the
+// middle.
 #pragma once
 
 #include <vector>
@@ -23,8 +24,9 @@ class Solid {
   enum class Order { linear, quadratic, enriched };
 
   /// resolution: edges along an eighth of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
-  /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and if an
-  /// element is turned inside out or flat at the rest shape.
+  /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument for another resolution, for more
+  /// than about 2 million linear or half a million other elements, and if an element is turned inside out or
+  /// flat at the rest shape.
   Solid(const Part& part, int resolution, Order order = Order::linear);
 
   const std::vector<Material<double>>& material() const { return material_; }

@@ -20,8 +20,8 @@ namespace detail {
 inline constexpr double kCreaseCosine = 0.5;
 
 /// Computes the mesh of a torus: a grid with 4 * resolution angles around the tube and 8 * resolution angles
-/// around the axis. Appends to places (angle around the tube, angle around z, 0) of each vertex, rad, and to
-/// triangles the vertex numbers of each triangle.
+/// around the axis. Appends the angles of each vertex (around the tube, around z, 0), rad, to `places`, and
+/// the vertex numbers of each triangle to `triangles`.
 inline void torus_surface(int resolution, std::vector<Vec3<double>>& places,
                           std::vector<std::array<int, 3>>& triangles) {
   const int round = 8 * resolution, tube = 4 * resolution;
@@ -35,8 +35,8 @@ inline void torus_surface(int resolution, std::vector<Vec3<double>>& places,
     }
 }
 
-/// Sets the normals of a mesh from those of its vertices. A corner whose face deviates from the vertex normal
-/// by more than the crease angle gets the normal of the face.
+/// Sets the normals of a mesh from those of its vertices. A corner of a triangle gets the normal of the
+/// triangle instead if this differs from the normal of the vertex by more than the crease angle.
 inline void set_normals(TriangleMesh& mesh, std::vector<Vec3<double>> normals) {
   mesh.corners = mesh.triangles;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {

@@ -11,16 +11,16 @@ namespace pliant {
 /// The material points and triangles that cover a part, chosen once at the rest shape.
 class Surface {
  public:
-  /// resolution: edges along an eighth of a great circle. A ball has 24 resolution^2 + 2 vertices and 48
-  /// resolution^2 triangles; a torus has 32 resolution^2 vertices. Throws std::invalid_argument outside [1,
-  /// 512].
+  /// resolution: edges along an eighth of a great circle, from 1 to 512. A ball has 24 resolution^2 + 2
+  /// vertices and 48 resolution^2 triangles. A torus has 4 resolution points around the tube and 8 resolution
+  /// around the axis. Throws std::invalid_argument for another resolution.
   Surface(const Part& part, int resolution);
 
   const std::vector<Material<double>>& material() const { return material_; }
   /// The direction or pair of angles of each material point, the argument of ShapeInterface::mesh_label().
   const std::vector<Vec3<double>>& places() const { return places_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
-  /// Returns the resolution that gives about this number of triangles.
+  /// Returns the resolution that gives about this number of triangles, from 1 to 512.
   static int resolution_for(const Part& part, int triangles);
 
   /// Returns the mesh at these values in the body frame, with normals.

@@ -23,9 +23,9 @@ struct MassPoints {
   std::vector<Pack> mass;          ///< kg
   int n_points = 0;
   std::string rule;  ///< "affine", "sections", "rings", "full"
-  int level = 0;     ///< level of refinement at which the search stopped
+  int level = 0;     ///< level of refinement at which the search along its last direction (z or u) stopped
   /// Relative change of the integrals by doubling the points once more. 0 if the change is at most 2e-14, or
-  /// if it is at most 1e-12 and finer rules do not reduce it.
+  /// if it is at most 1e-12 and finer rules do not halve it.
   double relative_error = 0;
 };
 
