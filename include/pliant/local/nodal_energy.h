@@ -1,8 +1,9 @@
 // Interface of an elastic energy E(x) of local coordinates x (nodes.h). Its force on the coordinates is
 // -dE/dx, which is -K q_d of Eq. (11) where E is quadratic. An energy evaluates forces element by element and
-// never forms K for them (section 5 of the paper). Elements are processed four at a time, one in each lane of
-// a Pack. Each node sums the forces of its elements in a fixed order, so that results do not depend on the
-// number of threads.
+// never forms K for them (section 5 of the paper). SolidEnergy (solid/solid_energy-inl.h) and LinearMembrane
+// (shell/linear_membrane-inl.h) are the main implementations; the others are in shell/. Elements are
+// processed four at a time, one in each lane of a Pack. Each node sums the forces of its elements in a fixed
+// order, so that results do not depend on the number of threads.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,9 @@
 //   M = sum m G^T G            MassPointSums::add_mass()
 //   g_q = -sum m G^T b         MassPointSums::add_inertial_force()
 // with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot (inertia.h), and
-// the jets of single material points.
+// the jets of single material points. These sums serve parts whose s is not linear in q_s.
+// evaluate_inertia_of(), below, sends rigid parts to gyroscopic_force(), and parts with s linear in q_s to
+// LinearInertia (linear_inertia-inl.h).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,7 @@
-// The rows of the joints, Eqs. (12) and (13), Baumgarte's terms, and the blocks of W_c = C_q M^-1 C_q^T.
+// The rows of the joints, Eqs. (12) and (13), and the blocks of W_c = C_q M^-1 C_q^T:
+//   baumgarte()       2 alpha C_dot + beta^2 C
+//   wanted()          -gamma + 2 alpha C_dot + beta^2 C; IslandForces::correct (solve_joints-inl.h) uses it
+//   evaluate_joint()  C, C_dot, C_q and bias = -gamma of a joint
 #pragma once
 
 #include <algorithm>
@@ -11,6 +14,36 @@
 #include <pliant/math/index.h>
 
 namespace pliant {
+
+namespace detail {
+
+/// Returns Baumgarte's terms 2 alpha C_dot + beta^2 C of joint j; zero for a joint without them.
+template <class S>
+VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
+  const JointModel& joint = model.joints()[at(j)];
+  const JointMode mode = joints.modes[at(j)];
+  auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
+  if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed))
+    return VecMax<S, kMaxJointRows>::Constant(joint.rows, S(0.0));
+  const double alpha = joints.gains.alpha, beta2 = joints.gains.beta * joints.gains.beta;
+  // A gap that would close faster than the largest speed closes at that speed.
+  S factor(beta2);
+  if (mode == JointMode::closing) {
+    const S gap = math::sqrt_from_zero(S(rows(joints.C).squaredNorm()));
+    const double largest = 2 * alpha * joints.max_speed * joint.length;
+    if (plain(gap) * beta2 > largest) factor = S(largest) / gap;
+  }
+  return S(2 * alpha) * rows(joints.C_dot) + factor * rows(joints.C);
+}
+
+}  // namespace detail
+
+template <class S>
+VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
+  const JointModel& joint = model.joints()[at(j)];
+  // Eq. (13) with Baumgarte's terms: -gamma + 2 alpha C_dot + beta^2 C
+  return joints.bias.segment(joint.row, joint.rows) + detail::baumgarte(model, joints, j);
+}
 
 namespace detail {
 
@@ -324,36 +357,6 @@ template <class S>
 bool JointFactor<S>::is_rough() const {
   constexpr double small_pivot = 1e-5;
   return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < small_pivot;
-}
-
-namespace detail {
-
-/// Returns Baumgarte's terms 2 alpha C_dot + beta^2 C of joint j; zero for a joint without them.
-template <class S>
-VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
-  const JointModel& joint = model.joints()[at(j)];
-  const JointMode mode = joints.modes[at(j)];
-  auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
-  if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed))
-    return VecMax<S, kMaxJointRows>::Constant(joint.rows, S(0.0));
-  const double alpha = joints.gains.alpha, beta2 = joints.gains.beta * joints.gains.beta;
-  // A gap that would close faster than the largest speed closes at that speed.
-  S factor(beta2);
-  if (mode == JointMode::closing) {
-    const S gap = math::sqrt_from_zero(S(rows(joints.C).squaredNorm()));
-    const double largest = 2 * alpha * joints.max_speed * joint.length;
-    if (plain(gap) * beta2 > largest) factor = S(largest) / gap;
-  }
-  return S(2 * alpha) * rows(joints.C_dot) + factor * rows(joints.C);
-}
-
-}  // namespace detail
-
-template <class S>
-VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
-  const JointModel& joint = model.joints()[at(j)];
-  // Eq. (13) with Baumgarte's terms: -gamma + 2 alpha C_dot + beta^2 C
-  return joints.bias.segment(joint.row, joint.rows) + detail::baumgarte(model, joints, j);
 }
 
 PLIANT_INLINE double disagreement(const Model& model, const Workspace<double>& work, int j) {
