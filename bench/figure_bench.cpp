@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     const std::string head =
         std::string(calibration) +
         "scene,velocities,seconds,step_s,load_s,taken_s,real_time_factor,motion_percent,finding_percent,"
-        "settling_percent,deepest_share\n";
+        "resolution_percent,deepest_share\n";
     bench::TableFile file(argc > 2 ? std::string(argv[2]) + "/figure_bench.csv" : "", head);
     std::fputs(head.c_str(), stdout);
     for (const char* name :

@@ -1,6 +1,7 @@
-// Time per step of semi-implicit Euler and per evaluation of the accelerations, for parts with different
-// features and for different numbers of parts. Writes CSV to standard output. The last column is the cost of
-// an evaluation in multiply-adds at the measured peak of this machine.
+// Time of a step of semi-implicit Euler and of an evaluation of the accelerations, divided by the number of
+// parts. The parts have different features, and their number is 1, 10 or 1000. Writes CSV to standard output.
+// The last column is the cost of an evaluation per part, in multiply-adds at the measured peak of this
+// machine.
 #include <cstdio>
 #include <memory>
 #include <string>

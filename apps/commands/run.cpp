@@ -254,8 +254,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
   command
       ->add_flag("--resume", options->resume,
-                 "Continue the run in the folder; the result is equal to the last bit to that of an "
-                 "uninterrupted run")
+                 "Continue the run in the folder; the result has the same bits as that of an uninterrupted "
+                 "run")
       ->excludes(force);
   command->footer(
       "Examples:\n"

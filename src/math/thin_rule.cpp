@@ -18,8 +18,8 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
   constexpr double far = std::numeric_limits<double>::infinity();
   for (Eigen::Index left = Z.cols(); left > 0; --left) {
     auto z = Z.col(left - 1);
-    // The first entries that vanish along z and along -z. The one with the larger pivot is eliminated, which
-    // is the more stable choice.
+    // Find the first entry that vanishes in the direction -z (index 0) and in the direction z (index 1). The
+    // one with the larger pivot is eliminated, which is the more stable choice.
     Eigen::Index pivot[2] = {-1, -1};
     double reach[2] = {far, far};
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -48,8 +48,9 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
 
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, double tolerance) {
   const Eigen::Index n = F.rows();
-  // Scale each column by its absolute sum, and each row by the square root d_i of its norm. The unknowns x_i
-  // = d_i c_i then behave like square roots of weights.
+  // Divide each column by the sum of its absolute values. Then divide each row i by d_i, the square root of
+  // its norm, and multiply the factor c_i by d_i. The unknowns are thus x_i = d_i c_i. They behave like
+  // square roots of weights, because the norm of a row has the weight of its node as a factor.
   Eigen::MatrixXd A = F;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
     const double sum = A.col(k).cwiseAbs().sum();

@@ -25,7 +25,8 @@ namespace contact_resolution {
 /// Overlapping bodies are separated at most at this speed, in sizes of the smaller body per second, plus the
 /// speed of their own travel.
 inline constexpr double kSeparationSpeed = 1;
-/// Largest number of rounds of a separation, because a round may push bodies into others.
+/// Largest number of rounds of a separation. A round may push bodies into others, which the next round
+/// separates.
 inline constexpr int kMaxSeparationRounds = 16;
 /// Largest number of successive resolutions after a motion whose impulses push bodies into others
 /// (resolve_chain).
@@ -85,8 +86,8 @@ PLIANT_INLINE void ContactResolution::reconcile(StepContext& step, const std::ve
 }
 
 /// Returns the distance (m) by which the rotation of a part moves a material point at x away from the tangent
-/// of its path in h seconds. Such a point may overlap another body within a step and move away from that body
-/// at the end of the step.
+/// of its path in h seconds. Because of this distance the point may enter another body, although its velocity
+/// at the end of the step points away from that body.
 PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide& side, const Vec3<double>& x,
                                                                const State& state, double h) const {
   if (side.part < 0 || side.at_nodes()) return 0;
@@ -206,9 +207,11 @@ PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double 
   }
 }
 
-/// Computes the impulses and limits the displacements that they cause. Adds their work and residual to the
-/// state and the counters, and the reactions of joints to the record. To second order, the work of an impulse
-/// is that of a constant force during the motion. warm: whether the impulses start from the contact cache.
+/// Computes the impulses and limits the displacements that they cause. Adds their work to the state, and the
+/// reactions of joints to the record. The state and the counters store the largest residual of their contact
+/// solutions. To second order, the work of an impulse is that of a constant force during the motion. The
+/// impulses are also recorded for the contact cache, unless motion.h is zero. warm: whether the impulses
+/// start from the contact cache.
 PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const ResolvedMotion& motion,
                                                        const std::vector<Contact>& contacts, bool warm,
                                                        ContactProblem& problem) {
@@ -271,9 +274,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   apply_solution(problem, dynamics_.model(), step.work, state);
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // Methods with a reach of 1 (FreeMotion::reach) compute the work of forces from the velocities at the start
-  // of the step; this work is zero for resting parts. For other methods the displacement by the impulses
-  // changes the work of forces.
+  // The work of forces during the displacement by the impulses is added. Motions of methods with a reach of 1
+  // (FreeMotion::reach) are an exception. These methods compute the work of forces from the velocities at the
+  // start of the motion. This work is already zero for a resting part.
   if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (h > 0) separate_overlaps(step);
   project_limits(step);
@@ -351,8 +354,8 @@ PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) 
 }
 
 /// Keeps the contacts that the separation of deep contacts affects. These are the contacts of bodies that
-/// move as a whole and are connected by contacts to a body with a deep contact. Of meshes, they are the
-/// contacts of pairs with a deep contact.
+/// move as a whole and are connected by contacts to a body with a deep contact. If a pair has a deep contact
+/// at nodes of a mesh, all contacts of this pair are kept, too.
 PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contacts,
                                                     const Workspace<double>& work) const {
   const Model& model = dynamics_.model();

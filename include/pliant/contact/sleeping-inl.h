@@ -41,8 +41,8 @@ inline bool moves(const Part& part, double t, double h) {
   const MovingFrame now = motion->at(t), half = motion->at(t + 0.5 * h), then = motion->at(t + h);
   return now.c != then.c || now.R != then.R || now.c != half.c || now.R != half.R;
 }
-/// Returns whether a point of the world, or a part with prescribed motion that has the point, moves within h
-/// seconds after t.
+/// Returns whether the prescribed motion of a point moves it within h seconds after t. For a point of a part
+/// it returns whether the prescribed motion of the part moves or rotates the part.
 inline bool moves(const Point& point, double t, double h) {
   return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
 }

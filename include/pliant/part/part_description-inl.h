@@ -84,7 +84,7 @@ PLIANT_INLINE Part& PartDescription::place(const Vec3<double>& c, const Eigen::Q
   if (motion_) refuse("its motion is prescribed and sets its position; do not place it");
   if (!c.allFinite()) refuse("its position is not finite");
   if (!(R.norm() > 0) || !std::isfinite(R.norm()))
-    refuse("its orientation is not a rotation (quaternion of length 0)");
+    refuse("its orientation is not a rotation: its quaternion has length 0 or is not finite");
   c0_ = c;
   R0_ = R.normalized();
   return part();
@@ -249,7 +249,7 @@ PLIANT_INLINE Part& PartDescription::inertia(double mass, const Mat3<double>& ab
       I[0] + I[1] < I[2] * (1 - 1e-12))
     refuse("no body has this inertia: its principal moments about the centre of mass are " +
            detail::part_text(I[0]) + ", " + detail::part_text(I[1]) + ", " + detail::part_text(I[2]) +
-           "; each must be positive and at most the sum of the others");
+           "; each must be positive and at most the sum of the others, and the matrix must be symmetric");
   given_inertia_ = detail::rigid_part_inertia(mass, about_origin, centre);
   return part();
 }
@@ -288,7 +288,7 @@ PLIANT_INLINE Part& PartDescription::prescribe(PrescribedMotion motion) {
   if (fixed_ && !motion_) refuse("it is fixed; its motion cannot be prescribed as well");
   if (!motion.axis.allFinite() || motion.axis.isZero(0)) refuse("the axis of its motion has no direction");
   if (!(motion.orientation.norm() > 0) || !std::isfinite(motion.orientation.norm()))
-    refuse("its orientation is not a rotation (quaternion of length 0)");
+    refuse("its orientation is not a rotation: its quaternion has length 0 or is not finite");
   motion.axis.stableNormalize();
   motion.orientation.normalize();
   const MovingFrame start = motion.at(0);

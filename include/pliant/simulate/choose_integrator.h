@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// The name of a method that stands for this choice.
+/// The name that requests this choice, in place of the name of a method.
 inline constexpr const char* kAutomatic = "auto";
 /// Tolerance with this choice if none is given.
 inline constexpr double kStandardTolerance = 1e-6;

@@ -28,7 +28,7 @@ PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
   return message.str();
 }
 
-/// Returns the name of the first joint whose gap is not finite; empty if there is none. Rigid islands
+/// Returns a text that names the first joint whose gap is not finite; empty if there is none. Rigid islands
 /// evaluate no gaps.
 inline std::string gap_not_finite(const Model& model, const Workspace<double>& work) {
   if (work.joints.C.allFinite()) return {};

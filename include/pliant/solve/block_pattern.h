@@ -38,7 +38,8 @@ struct Elimination {
 /// edges: pairs of nodes whose block is not zero, in any order; pairs may repeat.
 Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
                       NodeOrder order);
-/// Returns the elimination with fewer multiplications of two: in cardinality_order, and in a given order.
+/// Computes two eliminations, in cardinality_order and in the given order. Returns the one that needs fewer
+/// multiplications.
 Elimination cheapest_elimination(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
                                  NodeOrder order);
 
@@ -54,7 +55,7 @@ class BlockPattern {
   /// The storage of one block, by columns. (This is not a place in the order.)
   struct Place {
     int offset;    ///< of the first number
-    bool swapped;  ///< whether the block has the rows of v and the columns of u
+    bool swapped;  ///< for place(u, v): whether the block has the rows of v and the columns of u
   };
   /// Returns the storage of the block of the nodes u and v. Throws std::out_of_range if it is not in the
   /// pattern.

@@ -68,7 +68,8 @@ class ActiveSet {
         pivot -= W_(j, active_[k]) * y[k];
         slack += W_(j, active_[k]) * lambda_[active_[k]];
       }
-      // The step ends when row j is satisfied, or when the impulse of the first active row becomes zero.
+      // The step ends when row j is satisfied. It ends earlier if the impulse of an active row becomes zero
+      // before that; this row is released.
       const bool dependent = !(pivot > kDependentOneSidedRow * W_(j, j));
       double step = dependent ? -1 : std::max(0.0, -slack / pivot);
       int released = -1;

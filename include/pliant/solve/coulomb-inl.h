@@ -61,8 +61,9 @@ PLIANT_INLINE Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_fri
   const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
   Eigen::Array2d t;  // p_t along the modes
   double p_n = 0;
-  // Newton's method with bounds for the root of mu p_n / |p_t| - 1. The function is nearly linear and
-  // increases with s: |p_t| decreases to 0 and p_n tends to p_frictionless > 0.
+  // Newton's method with bounds for a root of f(s) = mu p_n / |p_t| - 1. f is negative at s = 0, because the
+  // contact does not stick. For large s it is nearly linear and increases without bound: |p_t| decreases to 0
+  // and p_n tends to p_frictionless > 0.
   double low = 0, high = std::numeric_limits<double>::infinity(), s = 0;
   for (int i = 0; i < detail::kMaxSlideIterations; ++i) {
     const Eigen::Array2d share = 1 / (stiffness_ + s);

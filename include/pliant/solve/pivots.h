@@ -57,7 +57,8 @@ class Pivots {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
   }
 
-  /// Stores the pivot of a row and returns true; or returns false and excludes the row if the pivot vanishes.
+  /// Stores the pivot of a row and returns true. If the pivot vanishes, or if RankRule::keep excludes the
+  /// row, excludes the row and returns false.
   bool accept(int row, const S& pivot) {
     const double scale = entry_[at(row)], value = plain(pivot);
     // A scale that is not finite excludes no row; the check of the solution for finite numbers detects such a

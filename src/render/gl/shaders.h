@@ -8,7 +8,7 @@ inline constexpr unsigned kFrameBinding = 0;
 extern const char* const kShared;
 
 extern const char* const kShadowVertex;  ///< depth of the bodies from the key light
-extern const char* const kHeightVertex;  ///< depth of the bodies from below the ground
+extern const char* const kHeightVertex;  ///< height of the bodies over the ground, as depth
 extern const char* const kDepthFragment;
 extern const char* const kContactVertex;  ///< share of the sky that is visible from each point of the ground
 extern const char* const kContactFragment;
