@@ -44,7 +44,7 @@ TEST_CASE("a ball on a taut string does not move when another ball falls on it",
     Simulation simulation(body, method);
     const double impulse = impulse_of_impact(simulation);
     const double v = std::sqrt(2 * kG * 0.2);
-    // Duration of the rest of the step, in which the string carries both balls.
+    // Time from the impact to the end of the step. In this time the string carries both balls.
     const double left = simulation.time() - v / kG;
     REQUIRE((left >= 0 && left <= 1e-3));
     CHECK(impulse == Approx(falls.total_mass() * v).epsilon(0.02));

@@ -1,5 +1,5 @@
-// The block factorisation against dense algebra: random patterns, sizes and orders; redundant rows;
-// derivatives.
+// The block factorisation against dense algebra: random patterns and sizes in three orders of elimination;
+// redundant rows; derivatives.
 #include "catch.h"
 
 #include <numeric>
@@ -127,7 +127,8 @@ TEST_CASE("block factor: the remaining full block is dense if it has at least 18
   CHECK(all.first_dense() == 0);
   CHECK(all.dense_rows().size() == 27);
   CHECK(all.updates().empty());
-  // A chain that ends in a fully connected block: blocks, then dense.
+  // A chain that ends in a set of nodes that are all neighbours. The chain is factored by blocks, and the set
+  // as one dense matrix.
   std::vector<std::pair<int, int>> both = all_pairs(91, 100);
   both.insert(both.end(), links.begin(), links.end());
   const BlockPattern last(chain, both, given_order);
@@ -140,7 +141,8 @@ TEST_CASE("block factor: redundant rows get zero solutions, and the remaining ro
   Draws draws(3);
   for (int trial = 0; trial < 100; ++trial) {
     Sample sample(draws, draws.integer(2, 12), draws.integer(0, 5), false);
-    // A row is replaced by a copy of another: the rank falls by one and the system stays solvable.
+    // A row and its column are replaced by copies of another row and its column. The rank falls by one, and
+    // the system stays solvable.
     const auto n = static_cast<int>(sample.A.rows());
     const int copy = draws.integer(0, n - 1);
     int original = draws.integer(0, n - 2);
@@ -196,7 +198,7 @@ TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
   }
 }
 
-TEST_CASE("cancellation in a pivot is measured relative to the cancelling entries") {
+TEST_CASE("block factor: a tiny pivot is excluded if its row was given a larger scale") {
   const BlockPattern pattern({1, 1}, {}, given_order);
   for (const bool measured : {false, true}) {
     BlockFactor<double> factor;

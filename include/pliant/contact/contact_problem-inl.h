@@ -78,7 +78,7 @@ PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Conta
   sides_.push_back(std::move(s));
 }
 
-/// Returns a side of a part that moves as a whole, with J = 0.
+/// Returns a side with J = 0. The mover of the side is the part or its island, not a node.
 PLIANT_INLINE ContactProblem::Side ContactProblem::make_side(int part) {
   const int mover = movers_.mover_of_part(part);
   Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
@@ -268,7 +268,9 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
   }
   for (const String& string : strings_) {
     double& along = system_.constant(string.contact)[0];
-    along = 0;  // the constant is the rate of the string for movers at rest, m/s
+    // The constant is C_dot of the string when all movers are at rest, m/s. It comes from prescribed ends.
+    // system_.velocity() includes the constant, which is therefore set to zero first.
+    along = 0;
     along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
   }
   const CoulombResult result = system_.solve(after_);

@@ -1,4 +1,4 @@
-// The parts that contact impulses move.
+// The parts that are moved by contact impulses: their evaluation, and the application of a solution.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace pliant {
 
 /// Returns the moving parts at some contacts, with all parts of their islands, sorted.
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts);
-/// Returns whether a joint in the islands of some parts follows a prescribed path.
+/// Returns whether a joint in the islands of some parts follows a prescribed path. Strings are not examined.
 bool are_driven(const Model& model, const std::vector<int>& parts);
 /// Evaluates the quantities that ContactProblem needs at a state and a time t (s), and stores them in work:
 /// masses of touched parts without joints, and masses and joint factors of touched islands. A part that is

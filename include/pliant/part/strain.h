@@ -11,7 +11,8 @@ namespace pliant::strain {
 /// Packs per block.
 inline constexpr int kBlock = 4;
 
-/// Values of the parameters. The jets of Part need this scalar if the material points have dual parts.
+/// Values of the parameters as dual numbers. Part::jets() needs this type if the material points are dual
+/// numbers.
 using DualValues = ParameterValues<Dual<1>>;
 
 /// F and dF/dq_k of each pack of a block.

@@ -17,14 +17,16 @@ namespace pliant {
 
 namespace projection {
 
-/// Distance of just_before() and just_after() from a kink, in units in the last place.
+/// Distance of just_before() and just_after() from a kink at time t, in units of the machine epsilon times
+/// |t|.
 inline constexpr double kKinkMargin = 2;
 
 /// An impulse below this share of impulse_scale() is rounding.
 inline constexpr double kImpulseRounding = 1e-9;
 
-/// Returns a scale of the impulses of a joint, N s: the mass of its lightest part, times the larger of the
-/// largest speed of its parts and the closing speed, Stabilization::rate times the length of the joint.
+/// Returns a scale of the impulses of a joint, N s: a mass times a speed. The mass is that of the lightest
+/// part of the joint. The speed is the largest speed of its parts, and at least Stabilization::rate times the
+/// length of the joint.
 inline double impulse_scale(const Model& model, const JointModel& joint, const VecX<double>& v) {
   double mass = std::numeric_limits<double>::infinity(),
          speed = model.body().stabilization.rate * joint.length;

@@ -24,9 +24,10 @@ namespace projection {
 /// Changes of the frame below this share of the size of the part are rounding.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
-/// K is regular if it differs from H by less than this share of the smallest moment of inertia.
+/// K is regular if |sum m d s^T| over the nodes is at most this share of the smallest moment of inertia.
 inline constexpr double kSmallChange = 0.3;
-/// Largest condition number of K, with H0 scaled to a unit diagonal.
+/// Largest condition number of K (for modes, of S), after scaling by the factors that scale the diagonal of
+/// H0 to 1.
 inline constexpr double kMaxCondition = 1e8;
 
 /// Returns whether the conditions of a part without dynamic parameters are satisfied to rounding, now and
@@ -48,7 +49,8 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H by at most sqrt(2) |sum m d s^T|, and by terms of the unmet conditions, which are small.
+  // K differs from H0 by at most sqrt(2) |sum m d s^T|, and by terms of the unmet conditions, which are
+  // small.
   const bool regular = violation.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(violation.W_d) && small(state.h * violation.W_d_dot);
 }

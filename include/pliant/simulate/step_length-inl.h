@@ -14,9 +14,10 @@ namespace pliant {
 namespace step_length {
 /// Safety factor, and smallest factor from one step to the next.
 inline constexpr double kSafety = 0.8, kMinFactor = 0.2;
-/// Safety factor for errors of order 0, which are known, not estimated.
+/// Safety factor for errors of order 0. Such an error is the ratio of the step length to the largest length
+/// with contacts; it is known, not estimated. The next length may be below kMinFactor times the last one.
 inline constexpr double kExactSafety = 0.99;
-/// Weight of the integral part of the controller.
+/// Exponent of the previous error in the proportional-integral controller, times order + 1.
 inline constexpr double kIntegral = 0.2;
 /// Lower bound of an error in the controller, in tolerances.
 inline constexpr double kMinError = 1e-6;

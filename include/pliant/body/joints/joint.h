@@ -113,8 +113,8 @@ template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
-/// rows; `first` and `second`, the numbers of points of its sides (second = 0 if the world side needs no
-/// point); and `one_sided`. Its formula is
+/// rows; `first` and `second`, the numbers of points of its sides (second = 0 for a joint to the world
+/// whose formula needs no second point); and `one_sided`. Its formula is
 /// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;

@@ -38,8 +38,8 @@ const std::vector<LocalLawInfo>& all_local_laws();
 /// Returns the law of this name. Throws std::logic_error if there is none.
 const LocalLawInfo& local_law_info(const std::string& name);
 
-/// Returns a law by name with the values of its `numbers`, in this order. Throws std::invalid_argument for an
-/// unknown name; the message lists the laws.
+/// Returns a law by name with the values of its `numbers`, in this order. Throws std::invalid_argument for a
+/// wrong number of values, and for an unknown name; in that case the message lists the laws.
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values);
 
 }  // namespace pliant
