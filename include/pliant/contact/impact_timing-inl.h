@@ -1,6 +1,6 @@
-// Function bodies of impact_timing.h. locate_impact(), near the end, finds the time of the first impact within
-// a motion: bracket_impact() brackets it, locate_on_path() finds it on the dense output of the method, and
-// refine_impact() finds the exact time with steps of the method.
+// Function bodies of impact_timing.h. locate_impact(), near the end, finds the time of the first impact
+// within a motion: bracket_impact() brackets it, locate_on_path() finds it on the dense output of the method,
+// and refine_impact() finds the exact time with steps of the method.
 #pragma once
 
 #include <pliant/contact/impact_timing.h>
