@@ -6,7 +6,7 @@
 # state the sum of the other two.
 pliant_minutes_program=4
 pliant_minutes_everything=10
-pliant_minutes_tests=25
+pliant_minutes_tests=10
 
 # Each word of these lists is a package. a|b,c means a, or both b and c if the distribution has no package a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
