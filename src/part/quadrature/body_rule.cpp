@@ -68,8 +68,8 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
 }
 
 /// Returns the level along one direction at which refining changes no moment, with coarse nodes along the
-/// other directions. If no level suffices, returns the level with the smallest change and raises `remaining`
-/// to this change.
+/// other directions. If no level suffices, returns the last level whose change was less than half the best
+/// change before it, and raises `remaining` to its change.
 std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
                              std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;

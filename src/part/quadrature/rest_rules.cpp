@@ -105,8 +105,8 @@ class PowerPanel {
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
   /// Adds n nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near
-  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to t = e^-37,
-  /// which is rounding relative to 1.
+  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to about t =
+  /// e^-37, which is rounding relative to 1.
   void add_for_all_powers(int n) {
     const double reach = 37 / panel_.eps;
     for (const QuadratureNode& node : one_end_rule(n, 3)) {

@@ -109,8 +109,8 @@ class StateRanges {
 
 /// Returns the first level of refinement at which doubling changes no integral by more than kTolerance, or
 /// the first level whose change is at most kRequired and is not halved by the next two levels. If there is
-/// none, returns the last level and raises `remaining` to the smallest change found. columns(level) places
-/// the nodes.
+/// none, returns the last level and raises `remaining` to the smallest change found (within a factor of 2).
+/// columns(level) places the nodes.
 template <class Integrands, class MakeColumns>
 int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
@@ -168,7 +168,7 @@ void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& 
   nodes = std::move(kept);
 }
 
-/// Maximum number of points. With more, a step would last a good part of a second.
+/// Maximum number of points. With more, a step would take a large part of a second.
 inline constexpr std::size_t kMaxPoints = 2'000'000;
 [[noreturn]] inline void throw_too_many_points(const Part& part, const char* subject) {
   std::string names;

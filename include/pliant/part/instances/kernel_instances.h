@@ -1,4 +1,5 @@
-// Explicit instances of the kernels of all shapes and deformations of the lists. src/part compiles each once;
+// Explicit instances of the kernels of all shapes and deformations in the lists PLIANT_ALL_SHAPES and
+// PLIANT_ALL_DEFORMS. src/part compiles each once;
 // programs and the other sources of the library do not compile them again. Kernels of a program's own shapes
 // are compiled in the program.
 #pragma once
