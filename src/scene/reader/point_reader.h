@@ -33,7 +33,7 @@ class PointReader {
   std::optional<Point> on_part(const Reader& r) const;
   /// Returns the point {"part", "at"} or {"world"}, or nothing if it cannot be resolved; faults are reported.
   std::optional<Point> anywhere(const Reader& r) const;
-  /// Returns the point under a key of a spring or joint, as anywhere().
+  /// Returns the point under a key of a spring or joint, read by anywhere().
   std::optional<Point> end(const Reader& r, const char* key) const;
   /// Returns the first time in (after, until] and within the run (s) at which the position of a moving point
   /// of the world jumps, or nothing. The path is searched in 256 intervals.

@@ -10,7 +10,7 @@
 namespace pliant {
 
 /// Whether a file must reach the disk before it is renamed. With yes, the file survives a power cut. With
-/// no, writing is faster, and the file survives only a crash of the process.
+/// Durable::no, writing is faster, and the file survives only a crash of the process.
 enum class Durable { no, yes };
 
 /// A file that is written piece by piece. All members throw std::system_error with path and reason (for a
