@@ -1,5 +1,6 @@
 // The tracks of a picture in one vertex buffer. Points that are less than one sample from the previous kept
-// one are left out, except the last point of a track.
+// point are left out. The last point of a track, points behind the near plane and the first point after them
+// are always kept.
 #pragma once
 
 #include <vector>
