@@ -73,6 +73,7 @@ PLIANT_INLINE void ContactRecord::clear() {
   impulses.clear();
   sliding.clear();
   joint_impulses.setZero();
+  h = 0;
 }
 
 PLIANT_INLINE ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFinder& finder,

@@ -154,7 +154,7 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   state.start = start;
   state.step = number;
   state.h = h;
-  record_.h = length;
+  record_.h += length;
   resolution_.end_step(length, state);
   sleeping_.fall_asleep(record_.contacts, progress.begin, length, state);  // 7 sleep
   return length;

@@ -157,7 +157,6 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   state.start = initial.start;
   state.step = initial.step;
   state.h = initial.h;
-  record_.h = halves.length;
   return halves;
 }
 
