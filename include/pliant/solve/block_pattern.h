@@ -29,10 +29,10 @@ struct Elimination {
   std::vector<int> sizes;               ///< rows of each node
   std::vector<int> node_at;             ///< the node at each place
   std::vector<std::vector<int>> below;  ///< for each place, the later places with a block in its column of L
-  int first_dense = 0;                  ///< the first place of the dense matrix
-  long products = 0;                    ///< multiplications of a factorisation
-  long dense_products = 0;              ///< multiplications in the dense matrix, included in products
-  long values = 0;                      ///< numbers in the blocks of the factor
+  int first_dense = 0;      ///< the first place of the dense matrix; number of nodes if there is none
+  long products = 0;        ///< multiplications of a factorisation
+  long dense_products = 0;  ///< multiplications in the dense matrix, included in products
+  long values = 0;          ///< numbers in the blocks of the factor
 };
 /// Returns the elimination of a graph in the order that `order` returns. sizes: number of rows of each node.
 /// edges: pairs of nodes whose block is not zero, in any order; pairs may repeat.
@@ -77,8 +77,8 @@ class BlockPattern {
     int row;          ///< the first row of the node in the vectors, which are in the order of the nodes
     int diagonal;     ///< offset of the diagonal block
     int first, last;  ///< range of the blocks below the diagonal
-    /// The first of the column's updates. There is one for each pair (a, b) of its blocks below the diagonal,
-    /// a >= b.
+    /// Index in updates() of the first update of the column. There is one update for each pair (a, b) of its
+    /// blocks below the diagonal, a >= b.
     int first_update;
   };
   /// Returns the columns in the order of elimination; the columns of the dense matrix are the last ones.

@@ -33,8 +33,8 @@ class ActiveSet {
         is_active_(VecMax<int, Max>::Zero(b.size())),
         excluded_(VecMax<int, Max>::Zero(b.size())) {}
 
-  /// Returns the row with the largest violation^2 / W_ii, or -1 if no row is violated. Skips excluded rows
-  /// and rows with W_ii <= 0.
+  /// Returns the row with the largest violation^2 / W_ii, or -1 if no row is violated. Skips active rows,
+  /// excluded rows and rows with W_ii <= 0.
   int most_violated() const {
     int worst = -1;
     double largest = 0;

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// The solution of the problem.
+/// The solution lambda and its accuracy.
 template <int Max = Eigen::Dynamic>
 struct ComplementarityResult {
   VecMax<double, Max> lambda;
@@ -23,10 +23,11 @@ inline constexpr int kMaxLimitRows = 2 * kMaxGlobal;
 /// Returns the solution of the convex problem min 1/2 lambda^T W lambda + b^T lambda over lambda >= 0, by an
 /// active-set method. W: n x n; b: n. The lambda of an active row keeps its slack at zero. The most violated
 /// row becomes active first; other rows can be released on the way. The objective decreases with every
-/// change, so the method terminates; in any case it ends after about 50 n + 50 linear systems. Rows that
-/// depend on the active ones (rank-deficient W) need no lambda of their own. Rows that contradict the active
-/// ones, and rows whose diagonal entry of W is zero, keep lambda = 0; the residual reports their violation.
-/// Max: Eigen::Dynamic, or kMaxLimitRows for a solution without heap allocation.
+/// change, so the method terminates; in any case it ends after about 50 n + 50 linear systems. A row that
+/// depends on the active rows (rank-deficient W) keeps lambda = 0 if the active rows also satisfy this row.
+/// Rows that contradict the active rows, and rows whose diagonal entry of W is zero, keep lambda = 0; the
+/// residual reports their violation. Max: Eigen::Dynamic, or kMaxLimitRows for a solution without heap
+/// allocation.
 template <int Max>
 ComplementarityResult<Max> solve_complementarity(const MatMax<double, Max>& W, const VecMax<double, Max>& b);
 

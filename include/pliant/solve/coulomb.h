@@ -13,14 +13,15 @@ namespace pliant {
 class CoulombLaw {
  public:
   CoulombLaw();
-  /// W: 3 x 3, symmetric positive definite; rows: normal, then the two tangents. mu: coefficient of friction.
+  /// W: 3 x 3, symmetric positive definite; rows: normal, then the two tangents. mu: coefficient of friction;
+  /// no friction if mu <= 0.
   CoulombLaw(const Mat3<double>& W, double mu);
   /// Returns the impulse p for a velocity b without impulse.
   Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction. It is the
-  /// result if s exceeds the range of a double.
+  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction. If s
+  /// exceeds the range of a double, the result is p_frictionless along the normal and no tangential impulse.
   Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;

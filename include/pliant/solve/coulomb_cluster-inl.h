@@ -17,15 +17,15 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerances of the sweeps. The largest of both and of `enough` (CoulombSystem::solve) is used. kSweepExact
-/// is relative to the largest contact velocity without impulses. kSweepUlps is in units of the rounding error
-/// of the contact velocities J x.
+/// Tolerances of the sweeps. The largest of the two and of `enough` (CoulombSystem::solve) is used.
+/// kSweepExact is relative to the largest contact velocity without impulses. kSweepUlps is in units of the
+/// rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
 /// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
 /// Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPointMasses = 1e-6;
 /// Rounds of the search: maximum number of sweeps, and number of pairs of sweeps for the extrapolation (0: no
-/// extrapolation). Clusters with more than kManyContacts contacts skip the rounds without extrapolation.
+/// extrapolation). Larger clusters (more than kManyContacts contacts) skip the rounds without extrapolation.
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPointMasses{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
@@ -39,9 +39,9 @@ inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1
 /// The result of the search with compliant contacts is preferred if its residual is less than this multiple
 /// of the residual of the first search, because compliant contacts have bounded impulses.
 inline constexpr double kCompliantPreference = 2;
-/// A search stalls if a round leaves more than this fraction of the residual of the round before. It ends
-/// then, if the residual is at most kAcceptableResidual: nearly equal contacts can leave a residual that only
-/// unreasonably large impulses would remove.
+/// A search stalls if a round leaves more than this fraction of the residual of the round before. A search
+/// that stalls ends if its residual is at most kAcceptableResidual, because only unreasonably large impulses
+/// would remove the rest. Contacts that are nearly equal can cause this.
 inline constexpr double kSweepStalled = 0.1;
 /// A warm start is used if its residual is at most this fraction of the largest contact velocity without
 /// impulses.
@@ -155,7 +155,7 @@ PLIANT_INLINE double CoulombCluster::exact_level() const {
 }
 
 /// Solves the law of each contact once, in ascending (forward) or descending order. Returns the largest
-/// change of a velocity.
+/// change |W dp| of the velocity of a contact by the change dp of its own impulse.
 PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
   double change = 0;
   for (int k = 0; k < size_; ++k) {
@@ -168,7 +168,8 @@ PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
   return change;
 }
 
-/// Returns the largest violation of the law, as a velocity.
+/// Returns the largest violation of the law, as a velocity: |W dp| for the change dp of an impulse that
+/// satisfies the law of its contact alone.
 PLIANT_INLINE double CoulombCluster::residual() const {
   double worst = 0;
   for (int i = 0; i < size_; ++i) {
@@ -206,9 +207,9 @@ PLIANT_INLINE void CoulombCluster::set_impulses(const VecX<double>& impulses) {
 
 /// Runs pairs of sweeps (forward, backward) as a fixed-point iteration p = g(p) with Anderson acceleration
 /// (1965): the next p minimises |p - g(p)| over combinations of the last `history` pairs, as if g were
-/// linear. g is linear once no contact changes between sticking, sliding and separation. Sets the best
-/// impulses found; adds the number of sweeps to `sweeps`. Returns whether the impulses are exact
-/// (exact_level()).
+/// linear. history = 0: no acceleration. g is piecewise smooth, and linear while all contacts stick or
+/// separate. Sets the best impulses found; adds the number of sweeps to `sweeps`. Returns whether the
+/// impulses are exact (exact_level()).
 PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int history, int& sweeps) {
   const Eigen::Index n = 3 * size_;
   auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
@@ -272,8 +273,8 @@ PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !has_point_masses_;
 }
 
-/// Tries Newton's method from a warm start. Returns whether it found the solution; otherwise clears all
-/// impulses.
+/// Tries Newton's method from a warm start, the impulses `initial`. Returns whether the solution was found;
+/// if not, clears all impulses.
 PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
   set_impulses(initial);
   if (initial.allFinite() && residual() <= detail::kNearWarmStart * scale_ && newton(true)) return true;
@@ -282,7 +283,8 @@ PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
 }
 
 /// Runs the rounds of sweeps, each followed by Newton's method (not for many contacts with point masses),
-/// until the solution is found or the search stalls. Returns whether it found the solution.
+/// until the solution is found, the search stalls or all rounds are done. Returns whether the solution was
+/// found.
 PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.

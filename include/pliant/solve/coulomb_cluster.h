@@ -15,16 +15,19 @@ namespace detail {
 /// A cluster with more contacts than this is large.
 inline constexpr int kManyContacts = 100;
 /// Residual that is acceptable, in units of the largest contact velocity without impulses. A search that
-/// stalls ends at or below it. A search that leaves more is repeated with compliant contacts; for this
-/// decision, large clusters and clusters with point masses use kAcceptableOfManyContacts.
+/// stalls ends if its residual is at most this value. A search that leaves a larger residual is repeated with
+/// compliant contacts; for this decision, large clusters and clusters with point masses use
+/// kAcceptableOfManyContacts.
 inline constexpr double kAcceptableResidual = 1e-6;
 
 }  // namespace detail
 
-/// The law of a contact, linearised about its impulse: F + T du + D dp = 0 (coulomb_newton-inl.h).
+/// The law of a contact, linearised about its velocity u and its impulse p: F + T du + D dp = 0
+/// (coulomb_newton-inl.h). F is the violation of the law; T and D are the derivatives of F by u and p.
+/// solve_linear() replaces F and T by D^-1 F and D^-1 T.
 struct LinearContactLaw {
   int contact = 0;
-  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: the velocity at which the law is linearised
+  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< dp: the solution, the change of p
   Mat3<double> T = Mat3<double>::Zero(), D = T;
 };
 

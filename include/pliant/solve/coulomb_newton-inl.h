@@ -1,7 +1,8 @@
 // Newton's method for Coulomb's law at all contacts of a cluster, in the form of Alart and Curnier (1991):
 //   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t.
 // Here (...)+ is the positive part, and r > 0 is the inverse of the largest diagonal entry of W of the
-// contact. The law of each contact with a normal impulse is linearised:
+// contact. The law of each contact with (p_n - r u_n)+ > 0 is linearised, with the violation F and the
+// derivatives T and D of F by u and p:
 //   F + T du + D dp = 0.
 // The sides S give du = S dx, and the pushes Y give dx = sum Y dp over all contacts. The velocities of the
 // movers therefore change by
@@ -38,10 +39,10 @@ inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProxi
                         kProximalNear = 1e-5;
 inline constexpr double kProximalFactorOfPointMasses = 0.7, kMinProximalOfPointMasses = 1e-5;
 /// After kMaxFutileNewton steps without progress, a residual above kFutileFarOff times the best one resets
-/// the impulses to the best ones. A step that is not finite does so at once. The proximal weight then grows
-/// by kProximalGrowth, up to kFirstProximal, and does not fall below this value again. If the best residual
-/// is at most kAcceptableResidual and the weight is at its minimum, these steps without progress end the
-/// method.
+/// the impulses to the best ones. A step that is not finite resets them at once. The proximal weight is then
+/// multiplied by kProximalGrowth, up to kFirstProximal, and does not fall below this value again. If the best
+/// residual is at most kAcceptableResidual and the weight is at its minimum, these steps without progress end
+/// the method.
 inline constexpr int kMaxFutileNewton = 4;
 inline constexpr double kFutileFarOff = 1e3, kProximalGrowth = 10;
 /// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
@@ -57,9 +58,10 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
 
 }  // namespace detail
 
-/// Linearises the laws of all contacts with a normal impulse about the present impulses. Lists the changes
-/// that set to zero the impulses of contacts that separate or have no pushes, and the tangential impulses of
-/// contacts without friction.
+/// Linearises the laws of all contacts with p_n - r u_n > 0 about the present impulses. proximal: weight of
+/// the proximal term, which is added to the diagonal of D. For all other contacts, and for contacts without
+/// pushes, lists the change that sets the impulse to zero. For contacts without friction, lists the change
+/// that sets the tangential impulse to zero.
 PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
   auto& [open, drop] = scratch_.linear;
   open.clear();

@@ -170,7 +170,8 @@ PLIANT_INLINE void CoulombSystem::select_used() {
   }
 }
 
-/// Finds the clusters: the contacts are sorted by cluster; within a cluster their order does not change.
+/// Finds the clusters. Sorts the contacts with sides by cluster; within a cluster their order does not
+/// change.
 PLIANT_INLINE void CoulombSystem::find_clusters() {
   DisjointSets tied(movers_.size() - 1);
   std::vector<int> mover(contacts_.size());

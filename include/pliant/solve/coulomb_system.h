@@ -2,9 +2,10 @@
 // joints connect). The impulses p_k of the contacts change the velocities x of the movers and the contact
 // velocities u_k:
 //   x = x_0 + sum_k Y_k p_k,   u_k = c_k + J_k x
-// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, each for some velocities
-// of a mover at the contact. Y_k consists of pushes, one for each mover that the impulse changes. A cluster
-// is a set of movers that contacts connect; each cluster is solved separately. See README.md of this folder.
+// x_0 is x without contact impulses, and c_k is u_k for x = 0. Each pair (p_k, u_k) satisfies the law of
+// solve/coulomb.h. J_k consists of sides, each for some velocities of a mover at the contact. Y_k consists of
+// pushes, one for each mover that the impulse changes. A cluster is a set of movers that contacts connect;
+// each cluster is solved separately. See README.md of this folder.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +21,10 @@ namespace pliant {
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
-  /// Number of clusters for which the search failed and was repeated with compliant contacts. It failed if it
-  /// left a residual above `enough` and above 1e-6 of the largest contact velocity without impulses. The
-  /// fraction is 1e-2 for clusters with more than 100 contacts or with point masses, which converge more
-  /// slowly.
+  /// Number of clusters whose search was repeated with compliant contacts. A search is repeated if it leaves
+  /// a residual above `enough` (see CoulombSystem::solve) and above 1e-6 of the largest contact velocity
+  /// without impulses. The fraction is 1e-2 for clusters with more than 100 contacts or with point masses,
+  /// because their searches converge more slowly.
   int fallbacks = 0;
 };
 
@@ -40,7 +41,7 @@ class CoulombSystem {
 
   /// Adds a mover with `size` velocities and returns its number. A mover of size 3 is a point mass.
   int add_mover(int size);
-  /// Adds a contact with coefficient of friction mu. Its rows: normal, two tangents.
+  /// Adds a contact with coefficient of friction mu. The contact has three rows: the normal and two tangents.
   void add_contact(double mu);
   /// Adds a single one-sided row. It is stored as a contact whose other two rows are zero.
   void add_row();
@@ -76,7 +77,8 @@ class CoulombSystem {
   int first(int mover) const { return movers_[at(mover)]; }
   int mover_size(int mover) const { return movers_[at(mover) + 1] - movers_[at(mover)]; }
   int n_x() const { return movers_.back(); }
-  /// Returns J_i Y_j: the change of the velocity at contact i by unit impulses at contact j.
+  /// Returns J_i Y_j. Column r is the change of the velocity at contact i by a unit impulse along row r of
+  /// contact j.
   Mat3<double> effect(int i, int j) const;
   /// Returns u_k for the velocities x of all movers.
   Vec3<double> velocity(int k, const VecX<double>& x) const;
@@ -117,7 +119,7 @@ class CoulombSystem {
   Vec3<double> velocity_at(int k, const std::vector<Term>& terms, const VecX<double>& x) const;
   void add_change_to(int k, double factor, const std::vector<Term>& terms, VecX<double>& x) const;
 
-  std::vector<int> movers_{0};  // first velocity of each mover in x, and the end
+  std::vector<int> movers_{0};  // index in x of the first velocity of each mover, and n_x()
   std::vector<Contact> contacts_;
   std::vector<Term> sides_, pushes_;
   std::vector<double> numbers_;  // the entries of all terms

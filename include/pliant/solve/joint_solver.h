@@ -23,7 +23,7 @@ struct JointSolver {
 };
 
 /// Returns whether the augmented matrix is expected to be faster than the blocks, from the eliminations of
-/// both. The cost model is fixed; bench/joint_bench checks it.
+/// both. The cost model is fixed; bench/joint_bench.cpp measures both solvers and prints the choice.
 bool augmented_is_faster(const Elimination& blocks, const Elimination& augmented);
 
 }  // namespace pliant

@@ -1,6 +1,6 @@
 // The linear system (1 + A) x = b for the velocities of movers (coulomb_system.h) that contacts couple. There
-// can be many movers, each coupled to few others. The movers are eliminated one after the other; the one with
-// the fewest neighbours is the next.
+// can be many movers, each coupled to few others. The movers are eliminated one after the other; the next one
+// is always the mover with the fewest remaining neighbours.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ class MoverSystem {
   int add_mover(int size);
   /// Adds the blocks A_ij and A_ji for the movers i and j. The diagonal blocks always exist.
   void couple(int i, int j);
-  /// Computes the order of elimination and the storage. Returns false, and the system cannot be solved, if
-  /// the storage would exceed `max_fill` times that of the diagonal blocks of the movers.
+  /// Computes the order of elimination and the storage. Returns false if the storage would exceed `max_fill`
+  /// times the storage of the diagonal blocks; the system then cannot be solved.
   bool order(double max_fill);
 
   bool empty() const { return movers_.empty(); }
@@ -44,14 +44,16 @@ class MoverSystem {
   void add(int row, const Eigen::MatrixBase<Vector>& b) {
     b_.segment<Vector::RowsAtCompileTime>(row, b.rows()) += b;
   }
-  /// Adds to a block of A, or to some of its columns if block.first is the first number of such a column.
+  /// Adds a matrix to a block of A, or to some columns of the block if block.first is the first number of the
+  /// first of these columns.
   template <class Matrix>
   void add(const Block& block, const Eigen::MatrixBase<Matrix>& A) {
     using Numbers = Eigen::Matrix<double, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>;
     Eigen::Map<Numbers, 0, Eigen::OuterStride<>>(numbers_.data() + block.first, A.rows(), A.cols(),
                                                  Eigen::OuterStride<>(block.stride)) += A;
   }
-  /// Solves the system; overwrites b by x. The solution is not finite if the system is singular.
+  /// Solves the system by elimination without pivoting between movers; overwrites b by x. The solution is not
+  /// checked: it can be wrong or not finite if the system is singular.
   void solve();
   /// Returns `size` values of x, starting at a row.
   auto change(int row, int size) const { return b_.segment(row, size); }
@@ -73,7 +75,7 @@ class MoverSystem {
 
   std::vector<Mover> movers_;
   std::vector<int> sequence_;         // movers in the order of elimination
-  std::vector<std::size_t> targets_;  // for each mover: the blocks of pairs of its neighbours, by columns
+  std::vector<std::size_t> targets_;  // for each mover: storage of the blocks of its pairs of neighbours
   VecX<double> numbers_;              // the entries of 1 + A, in the order of elimination
   VecX<double> b_;
 };
