@@ -21,8 +21,8 @@ class EigenFactor final : public SparseFactor {
     return true;
   }
 
-  /// Solves for several right-hand sides together: they are the rows of y_, and each entry of L is loaded
-  /// only twice.
+  /// Solves for several right-hand sides together. The right-hand sides are the rows of y_, so that each
+  /// entry of L is loaded only twice.
   void do_solve(Eigen::Ref<Eigen::MatrixXd> x) override {
     if (x.cols() == 1) {
       x = ldlt_.solve(x).eval();

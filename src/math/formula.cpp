@@ -216,7 +216,7 @@ class Parser {
   }
 
   /// Appends an instruction. If all its arguments are numbers, replaces them by the result; throws
-  /// FormulaError if the result is not finite. place: byte of the text to report.
+  /// FormulaError if the result is not finite. place: the byte of the text that an error reports.
   void emit(const Instruction& instruction, std::size_t place) {
     const std::size_t n = static_cast<std::size_t>(arguments(instruction.code));
     bool constant = n > 0;

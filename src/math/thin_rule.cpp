@@ -18,8 +18,8 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
   constexpr double far = std::numeric_limits<double>::infinity();
   for (Eigen::Index left = Z.cols(); left > 0; --left) {
     auto z = Z.col(left - 1);
-    // Find the first entry that vanishes in the direction -z (index 0) and in the direction z (index 1). The
-    // one with the larger pivot is eliminated, which is the more stable choice.
+    // Find the first entry that vanishes in the direction -z (index 0) and in the direction z (index 1). Of
+    // these two entries, the entry with the larger pivot |z_i| is eliminated, because this is more stable.
     Eigen::Index pivot[2] = {-1, -1};
     double reach[2] = {far, far};
     for (Eigen::Index i = 0; i < x.size(); ++i) {

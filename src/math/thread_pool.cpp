@@ -1,4 +1,4 @@
-// The threads wait for a round of tasks, fetch task numbers from one counter, and report when they are done.
+// The threads wait for the tasks of a call of run(), fetch task numbers from one counter, and report the end.
 #include <pliant/math/thread_pool.h>
 
 #include <atomic>
@@ -23,7 +23,8 @@ struct ThreadPool::Impl {
   std::condition_variable wake, done;
   const std::function<void(int)>* task = nullptr;
   int n = 0;
-  /// Whether the caller flushes subnormal numbers. All threads then do, so that results are equal.
+  /// Whether the thread that calls run() flushes subnormal numbers. All threads then flush subnormal numbers,
+  /// so that the result of a task does not depend on its thread.
   bool flush = false;
   std::atomic<int> next{0};
   int busy = 0;

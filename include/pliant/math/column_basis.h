@@ -1,5 +1,5 @@
-// Orthonormal bases of the columns of dense matrices, and least squares, by Householder's QR. They are
-// compiled once, in src, because Eigen's QR factorisations compile slowly.
+// Orthonormal bases of the columns of dense matrices, and least squares, by Householder's QR. The functions
+// are compiled once, in src, because Eigen's QR factorisations compile slowly.
 #pragma once
 
 #include <pliant/math/types.h>
@@ -20,7 +20,7 @@ MatX<double> complement_basis(const MatX<double>& A);
 /// the rank that column_basis(A, dependent) finds.
 MatX<double> complement_basis(const MatX<double>& A, double dependent);
 
-/// Returns an x that minimises |A x - b|. It is the only one if the columns of A are independent.
+/// Returns an x that minimises |A x - b|. Only one x does so if the columns of A are independent.
 VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b);
 
 }  // namespace pliant

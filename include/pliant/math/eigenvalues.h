@@ -1,4 +1,5 @@
-// Eigenvalues of dense matrices. They are compiled once, in src, because Eigen's solvers compile slowly.
+// Eigenvalues of dense matrices. The functions are compiled once, in src, because Eigen's solvers compile
+// slowly.
 #pragma once
 
 #include <complex>

@@ -153,8 +153,9 @@ inline bool has_branches(Code code) {
          code == Code::kSmoothstep;
 }
 
-/// Returns which of its two branches an instruction uses on its arguments. The branches of a smoothstep join
-/// smoothly, so it has a branch only if it is a step (a = b).
+/// Returns which of its two branches (false, true) an instruction uses on its arguments x; false for an
+/// instruction without branches. The branches of a smoothstep join smoothly, so a smoothstep has branches
+/// only if it is a step (a = b).
 inline bool branch(const Instruction& instruction, const Taylor* x) {
   switch (instruction.code) {
     case Code::kAbs:

@@ -29,7 +29,7 @@ class FormulaError : public std::runtime_error {
   /// Returns the byte of the text at which the error was found, from 0; the length of the text if it ends too
   /// early.
   std::size_t offset() const { return offset_; }
-  /// Returns the error without its place; what() returns "at character N: reason".
+  /// Returns the error without its place; what() returns "at character N: reason", N = offset() + 1.
   const std::string& reason() const { return reason_; }
 
  private:

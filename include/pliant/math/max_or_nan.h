@@ -1,4 +1,4 @@
-// The larger of two numbers, which does not hide a NaN.
+// The larger of two numbers, or NaN if one of them is NaN.
 #pragma once
 
 #include <cmath>

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// A closed interval.
+/// The closed interval from min to max.
 struct Range {
   double min, max;
   constexpr bool contains(double x) const { return x >= min && x <= max; }

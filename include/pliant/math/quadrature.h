@@ -12,14 +12,15 @@ struct QuadratureNode {
   double weight;
 };
 
-/// Returns the Gauss-Legendre rule with n points, in ascending order: exact for polynomials of degree 2n - 1.
+/// Returns the Gauss-Legendre rule with n points, in ascending order. It is exact for polynomials of degree
+/// up to 2n - 1.
 std::vector<QuadratureNode> gauss_rule(int n);
 
-/// Returns n points for integrands with an algebraic or logarithmic singularity at 0: Gauss-Legendre in y,
-/// where x = y^q and q >= 1.
+/// Returns a rule with n points for integrands with an algebraic or logarithmic singularity at 0: the
+/// Gauss-Legendre rule in y, where x = y^q and q >= 1.
 std::vector<QuadratureNode> one_end_rule(int n, double q = 4);
 
-/// Returns 2n points for singularities at both ends: one_end_rule on each half.
+/// Returns a rule with 2n points for integrands with singularities at 0 and 1: one_end_rule(n) on each half.
 std::vector<QuadratureNode> both_ends_rule(int n);
 
 }  // namespace pliant

@@ -32,7 +32,8 @@ T angle_over_sine(const T& cosine, const T& sine2) {
 inline constexpr double kHalfTurnCosine = -1 + 1e-12;
 inline constexpr double kHalfTurnOffset = 1e-5;  // rad
 
-/// Returns the rotation vector (rad) of a rotation matrix Q.
+/// Returns the rotation vector (rad) of a rotation matrix Q. For a half turn the result has an error of
+/// kHalfTurnOffset.
 template <class T>
 Vec3<T> rotation_vector(const Mat3<T>& Q) {
   auto cosine = [](const Mat3<T>& R) { return T((R(0, 0) + R(1, 1) + R(2, 2) - T(1.0)) * T(0.5)); };

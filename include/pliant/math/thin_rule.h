@@ -7,13 +7,13 @@
 namespace pliant {
 
 /// Returns n factors c >= 0 for the weights of the n nodes. At most r of them are positive, where r is the
-/// numerical rank of F. If r = n, no node can be removed, and all factors are 1.
-/// F: one row for each node, one column for each function; F(i, k) is the contribution of node i to the
+/// numerical rank of F: the number of pivots of a QR factorisation of F, with scaled rows and columns, that
+/// are larger than `tolerance` times the largest pivot. If r = n, no node can be removed, and all factors are
+/// 1. F: one row for each node, one column for each function; F(i, k) is the contribution of node i to the
 /// integral of function k. The result satisfies F^T c = F^T 1. The error of an integral, relative to the sum
-/// of |F(i, k)| over i, is of the order of rounding or of `tolerance`. `tolerance` is also the pivot,
-/// relative to the largest, at which r is counted. rank_found (may be null) receives r. If the columns of F
-/// are samples of a space of functions, the rule can be exact for the whole space only if F has more columns
-/// than r; the caller checks this.
+/// of |F(i, k)| over i, is of the order of rounding or of `tolerance`. rank_found (may be null) receives r.
+/// If the columns of F are samples of a space of functions, the rule can be exact for the whole space only if
+/// F has more columns than r; the caller checks this.
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found = nullptr,
                           double tolerance = 1e-15);
 

@@ -1,6 +1,6 @@
-// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. Each returns value,
-// rate and second derivative, because moving anchors, prescribed paths and actuation need C_t and C_tt of Eq.
-// (13).
+// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. A function returns
+// its value, rate and second derivative, because moving anchors, prescribed paths and actuation need C_t and
+// C_tt of Eq. (13).
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ class TimeFunction {
   /// if a number is not finite, or if the times do not strictly increase.
   static TimeFunction key_frames(std::vector<double> t, std::vector<double> y);
   /// Returns the cubic spline with given rates at the first and the last key (clamped ends). A single key
-  /// gives a constant. Errors as above; in addition the rates must be finite.
+  /// gives a constant. Throws std::invalid_argument for invalid keys, as above, and if a rate is not finite.
   static TimeFunction key_frames(std::vector<double> t, std::vector<double> y, double first_rate,
                                  double last_rate);
   /// Returns a formula in t (see Formula in math/formula.h). Throws FormulaError with the offset of the
@@ -105,8 +105,8 @@ struct TimeVector {
   MeanRate over(double t, double h) const;
 };
 
-/// Fractions of a step at which functions of time are sampled. They are not equally spaced, so that a
-/// periodic motion is not zero at all of them.
+/// Fractions of a step at which functions of time are sampled. The fractions are not equally spaced, so that
+/// the samples of a periodic motion are not all zero.
 inline constexpr std::array<double, 5> kMoments{0, 0.27, 0.5, 0.77, 1};
 
 }  // namespace pliant

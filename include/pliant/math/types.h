@@ -17,7 +17,7 @@ using Vec3 = Vec<T, 3>;
 template <class T>
 using Mat3 = Eigen::Matrix<T, 3, 3>;
 
-/// Run-time size with a bound at compile time: stored on the stack, without heap allocation.
+/// Run-time size with a bound at compile time. The entries are stored in the object, without heap allocation.
 template <class T, int Max = kMaxVelocities>
 using VecMax = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, Max, 1>;
 template <class T, int Max = kMaxVelocities>

@@ -2,8 +2,7 @@
 // Each block of the coordinates of a part has its own unit. The unit is the size of the part for the
 // position, for parameters that are lengths, and for the root mean square of the local displacement. The unit
 // of the rotation is the radian. Other parameters keep their own unit. Errors of rates are measured in these
-// units per time T, with T = 1 s / (1 + r), where r is the fastest rate of the part in these units per
-// second.
+// units per second and divided by 1 + r, where r is the fastest rate of the part in these units per second.
 #pragma once
 
 #include <string>

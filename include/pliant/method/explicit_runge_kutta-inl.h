@@ -78,8 +78,7 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   powers_.col(stage) = work.power;
 }
 
-/// The rates are valid only if the gains of Baumgarte's terms have not changed either. The gains may depend
-/// on the length of the step.
+/// The gains of Baumgarte's terms are compared because they may depend on the length of the step.
 PLIANT_INLINE bool ExplicitRungeKutta::end_rates_valid(const Dynamics& dynamics, double t,
                                                        const State& state) const {
   auto gains = [&](double step) {

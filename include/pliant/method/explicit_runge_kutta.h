@@ -22,8 +22,8 @@ class ExplicitRungeKutta : public Integrator {
   int error_order() const override { return tableau_->error_order; }
   void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
-  /// Returns the dense output of the method, or cubic Hermite interpolation if the model has free oscillators
-  /// or if an additional stage fails.
+  /// Returns the dense output of the method, or cubic Hermite interpolation in three cases: the tableau has
+  /// no dense output, the model has free oscillators, or an additional stage fails.
   StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                 StepCounters& counters) override;
 
@@ -35,8 +35,8 @@ class ExplicitRungeKutta : public Integrator {
   /// InvertedElement if an additional stage leaves the range of the model.
   StepPath dense_output(const Dynamics& dynamics, const State& low, double h, const State& high,
                         StepCounters& counters);
-  /// Returns whether the rates at the end of the last step can be used at this state and time: both are those
-  /// of the end of that step.
+  /// Returns whether the rates at the end of the last step are valid at this state and time: whether the last
+  /// step ended at this state and time, with equal gains of Baumgarte's terms.
   bool end_rates_valid(const Dynamics& dynamics, double t, const State& state) const;
   /// Returns the error of the step, in tolerances. v: the velocities at its start.
   double estimate_error(double h, const VecX<double>& v);

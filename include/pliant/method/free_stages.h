@@ -21,7 +21,8 @@ class FreeStages {
  public:
   /// Prepares steps of length h, s. Returns at once if model, tableau and h have not changed.
   void prepare(const Model& model, const ButcherTableau& tableau, double h);
-  /// Returns whether the model has free oscillators. Without them all functions return at once.
+  /// Returns whether the model of the last prepare() has free oscillators. Without free oscillators all
+  /// functions return at once.
   bool has_oscillators() const { return !parts_.empty(); }
   /// Stores the loads n = v_dot + omega^2 q + D v of a stage, where v_dot are the accelerations at (q, v).
   /// Sets v_dot of the free oscillators to zero.

@@ -25,21 +25,21 @@ class Integrator {
   /// Returns the largest growth in a step, |eigenvalue| of the step map, for x'' + D x' + K x = 0 with unit
   /// masses. A step of h is stable if the growth is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
-  /// Returns the displacement that a constant force causes in a step, divided by h times the change of
-  /// velocity that it causes.
+  /// Returns the displacement that a constant force causes in a step of length h, divided by h and by the
+  /// change of velocity that the force causes.
   virtual double reach() const { return 0.5; }
   /// Sets whether parts that deform locally may touch something in the next steps. Only
   /// linearly_implicit uses this.
   virtual void expect_touch(bool) {}
   /// If the flag is true, replaces M^-1 of each implicit part (implicit/implicit_part.h) in work by the
-  /// response of the part to impulses over the last step (LocalResponse). If it is false, restores M^-1,
-  /// which an evaluation needs. work: the evaluation at the end of the step.
+  /// response of the part to impulses over the last step (LocalResponse). If the flag is false, restores
+  /// M^-1, which an evaluation needs. work: the evaluation at the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
 
   /// Returns the coordinates between two states `low` and `high` of the last step, h seconds apart: the dense
-  /// output of the method, which may cost evaluations, or else cubic Hermite interpolation.
+  /// output of the method, which may cost evaluations, or cubic Hermite interpolation if there is none.
   virtual StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                         StepCounters&) {
     return {dynamics, low, h, high};
@@ -49,7 +49,8 @@ class Integrator {
   virtual int error_order() const { return 0; }
   /// Measures the errors of the next steps by this scale, which must outlive them; nullptr: no measurement.
   void measure(const ErrorScale* scale) { scale_ = scale; }
-  /// Returns the largest error of the steps since the last call, in tolerances, and resets it to 0.
+  /// Returns the largest error of the steps since the last call, in tolerances, or NaN if one of the errors
+  /// is NaN. Resets the error to 0.
   double pop_error() { return std::exchange(error_, 0); }
 
  protected:

@@ -47,8 +47,8 @@ class LinearlyImplicit final : public Integrator {
   const ImplicitParts& implicit_parts() const {
     return first_order_ ? first_order_parts_ : second_order_parts_;
   }
-  /// Prepares the implicit parts for the calls of filter() in a step from the evaluation in step.work;
-  /// creates them at the first call. c: gamma h, s.
+  /// Prepares the implicit parts for the calls of filter() in a step, from the evaluation in step.work. The
+  /// first call creates the implicit parts. c: gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
   /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v so that the
   /// rows of joints, of strings that pull and of limits that push keep their values
@@ -68,7 +68,8 @@ class LinearlyImplicit final : public Integrator {
   /// Whether at an evaluation of this step a string did not pull, although its mode is JointMode::closed.
   /// Only strings of islands with an implicit part are checked.
   bool closed_string_was_slack_ = false;
-  // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
+  // Kept between steps, so that a step allocates no memory. The factors are functions of the model, the step
+  // length and the state; they do not depend on earlier steps.
   ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order
   State before_;                                          ///< state from which the step can be repeated
   Workspace<double> filtered_;                            ///< scratch storage of project_rates()

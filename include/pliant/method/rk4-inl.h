@@ -20,7 +20,7 @@ inline constexpr double kA[] = {0.5, 0, 0.5, 0, 0, 1}, kC[] = {0, 0.5, 0.5, 1},
 inline constexpr ButcherTableau kTableau{"rk4", 4, 4, kA, kB, kC, nullptr, nullptr, 0, false};
 
 /// Adds weight * rate to sum, or sets sum to weight * rate if `first` is true. Computes to = from + step *
-/// rate. The function has seven parameters because both results come from one pass over memory.
+/// rate. Both results come from one pass over memory.
 inline void accumulate(const VecX<double>& rate, double weight, bool first, VecX<double>& sum,
                        const VecX<double>& from, double step, VecX<double>& to) {
   constexpr Eigen::Index kBlock = 512;  // rows of a block that stays in the cache

@@ -41,7 +41,7 @@ inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1
 inline constexpr double kCompliantPreference = 2;
 /// A search stalls if a round leaves more than this fraction of the residual of the round before. A search
 /// that stalls ends if its residual is at most kAcceptableResidual, because only unreasonably large impulses
-/// would remove the rest. Contacts that are nearly equal can cause this.
+/// would reduce the residual further. Contacts that are nearly equal can cause this.
 inline constexpr double kSweepStalled = 0.1;
 /// A warm start is used if its residual is at most this fraction of the largest contact velocity without
 /// impulses.

@@ -76,7 +76,8 @@ template <class T>
 inline T square(const T& x) {
   return x * x;
 }
-/// Returns the square root of x >= 0, with value and derivatives 0 at x = 0 (the length of a zero vector).
+/// Returns the square root of x >= 0. Value and derivatives are 0 for x <= 1e-300, for example for the length
+/// of a zero vector.
 template <class T>
 inline T sqrt_from_zero(const T& x) {
   const T inside = x - T(1e-300);

@@ -11,7 +11,8 @@
 
 #include <pliant/math/scalar/functions.h>
 
-// GCC notes that the ABI of wide vectors passed by value has changed. All these calls are inlined.
+// GCC reports that the ABI of wide vectors passed by value has changed. The change has no effect here,
+// because all functions with vector arguments are inlined.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif

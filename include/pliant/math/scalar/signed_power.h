@@ -1,6 +1,6 @@
-// Signed powers sgn(x) |x|^eps of a sine or cosine x. The formulas of the superquadrics consist of them
-// (include/pliant/shape/README.md). Each x is stored with log |x|, so that a power costs one exponential, and
-// 0^eps log 0 is 0 and never NaN.
+// Signed powers sgn(x) |x|^eps of a sine or cosine x. The formulas of the superquadrics consist of these
+// powers (include/pliant/shape/README.md). Each x is stored with log |x|, so that a power costs one
+// exponential, and 0^eps log 0 is 0 and never NaN.
 #pragma once
 
 #include <limits>
@@ -70,7 +70,7 @@ Dual<N, T> signed_power(const Trig<Dual<N, T>>& c, const Dual<N, T>& eps) {
   return math::exp(Dual<N, T>(eps * c.log_abs)) * c.sign.v;
 }
 
-/// Returns r^p for r >= 0 and p > 0; at r = 0 value and derivatives are 0.
+/// Returns r^p for r >= 0 and p > 0; for r <= 1e-300 value and derivatives are 0.
 template <class T>
 T power_from_zero(const T& r, const T& p) {
   const T floor(1e-300);
@@ -79,8 +79,8 @@ T power_from_zero(const T& r, const T& p) {
                               T(0));
 }
 
-/// Returns (x^p + y^p)^(1/p) for x, y >= 0. The larger argument is factored out, so no exponent causes
-/// overflow.
+/// Returns (x^p + y^p)^(1/p) for x, y >= 0. The larger argument is factored out, so that no exponent causes
+/// overflow. For x = y = 0 the result is 0.
 template <class T>
 T power_norm(const T& x, const T& y, const T& p) {
   const T big = math::max(x, y);

@@ -1,5 +1,5 @@
-// sin(x)/x and atan(x)/x. They and their derivatives are finite and exact to rounding at x = 0 too. sin(x)/x
-// is a power series for |x| <= 1 and the quotient elsewhere.
+// sin(x)/x and atan(x)/x. The values and derivatives are finite and exact to rounding, also at x = 0.
+// sin(x)/x is a power series for |x| <= 1 and the quotient elsewhere.
 #pragma once
 
 #include <pliant/math/scalar/dual.h>

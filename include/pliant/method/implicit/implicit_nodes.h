@@ -12,9 +12,9 @@
 // with S = (1 + c alpha) M + (c beta + c^2) K sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0,
 // J], e = r_v + r_q / (c + beta) of the local coordinates, and e_r = c^2 r_v + c r_q of the parameters. kappa
 // and zeta are auxiliary unknowns. For beta > 0 the terms with w and P are not the exact derivatives; ROS2
-// keeps its order for every A. While K is constant, S is factored once. The border, the few columns beside S,
-// is solved with the factor of S: once, or in each step if global parameters change W. A stage then costs one
-// sparse solve.
+// keeps its order for every A. While K and c are constant, S is factored once. The border, the few columns
+// beside S, is solved with the factor of S: once for each factor, or in each step if global parameters change
+// W. A stage then costs one sparse solve.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // The block of the matrix A for one part that deforms locally, in (I - c A) k = r with c = gamma h
 // (linearly_implicit.h): the elasticity and damping of the part. Such a part is called implicit, all others
-// explicit. The filter is the solution k of this equation. implicit_nodes.h and implicit_modes.h are the two
-// kinds.
+// explicit. To filter the rates r means to solve this equation for k. implicit_nodes.h and implicit_modes.h
+// contain the two kinds of implicit parts.
 #pragma once
 
 #include <memory>

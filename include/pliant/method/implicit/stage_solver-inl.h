@@ -57,9 +57,10 @@ inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<dou
   }
 }
 
-/// Rotates the linear velocity of each part in x (n_v) from the frame of the part into the world, or back.
-/// Stiff directions turn with the parts, and the matrix stays valid in the frames of the parts.
 enum class Frame { world, body };
+/// Rotates the linear velocity of each part in x (n_v numbers) into the given frame: the world, or the frame
+/// of the part. Stiff directions turn with the parts, so that the matrix stays valid in the frames of the
+/// parts.
 inline void rotate_velocities(const Model& model, const VecX<double>& q, Frame into, VecX<double>& x) {
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;

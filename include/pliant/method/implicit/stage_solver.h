@@ -3,10 +3,10 @@
 // for Q and V, by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II,
 // section IV.8). r_q and r_v are known from the earlier stages. The matrix is I - c A_v - c^2 A_q, with the
 // derivatives A_q and A_v of v_dot by q and v. A_q and A_v are computed by difference quotients, as a rule at
-// most once in a step, and only if the iteration without the matrix would cost more. They are computed again
-// if stiff parts turn so far that the iteration with the matrix does not converge. Each cluster of parts that
-// joints, springs or mutual torques connect has one matrix, in the frames of the parts, because stiff
-// directions turn with the parts.
+// most once in a step, and only if the iteration without the matrix would cost more. A_q and A_v are computed
+// again if the iteration with the matrix does not converge, for example because stiff parts have turned far.
+// Each cluster of parts that joints, springs or mutual torques connect has one matrix, in the frames of the
+// parts, because stiff directions turn with the parts.
 #pragma once
 
 #include <string>
@@ -42,8 +42,8 @@ class StageSolver {
     MatX<double> A_q, A_v;
     Eigen::PartialPivLU<MatX<double>> factor;
   };
-  /// Iterates until q and v have converged, at most a fixed number of times, or until a new matrix is
-  /// expected to be cheaper. Returns whether the iteration converged.
+  /// Iterates until q and v have converged, until a fixed number of iterations is reached, or until a new
+  /// matrix is expected to be cheaper. Returns whether the iteration converged.
   bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// Evaluates A_q and A_v of each cluster at (t, q, v) by difference quotients, and factors its matrix.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
