@@ -39,9 +39,9 @@ class SparseFactor {
   void analyse(const SparseMatrix& A, Eigen::Index n_positive);
 
   /// Computes the numeric factorisation of A. Throws std::invalid_argument if A does not have the analysed
-  /// pattern. Returns false if a pivot is not finite, or if the pivot times the sign of its row (-1 for a row
-  /// from n_positive on, else 1) is not above kPivotTolerance |A(row, row)|. bad_pivot() then returns the
-  /// first such pivot in the order of elimination.
+  /// pattern. Returns false if a pivot is not finite, has the wrong sign, or is at most kPivotTolerance
+  /// |A(row, row)| in absolute value. The right sign is - for rows from n_positive on and + for other rows.
+  /// After a failure bad_pivot() returns the first bad pivot in the order of elimination.
   [[nodiscard]] bool factor(const SparseMatrix& A);
 
   /// Overwrites each column b of x with A⁻¹ b. x has as many rows as A. Throws std::logic_error unless the

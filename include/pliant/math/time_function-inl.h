@@ -87,8 +87,8 @@ class SplineFunction final : public TimeFunction::Impl {
   std::vector<double> t_, y_, m_, kinks_;
 };
 
-/// A formula. A change of its branches is located by bisection. It is a kink if the value or the rate jumps
-/// there.
+/// A formula. A change of its branches is located by bisection. This change is a kink if the value or the
+/// rate jumps there.
 class FormulaFunction final : public TimeFunction::Impl {
  public:
   explicit FormulaFunction(Formula formula) : formula_(std::move(formula)) {}

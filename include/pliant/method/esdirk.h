@@ -1,8 +1,8 @@
 // The ESDIRK method of order 4 by Kennedy and Carpenter (Appl. Numer. Math. 44, 2003: the implicit part of
 // ARK4(3)6L[2]SA), on (q, v, work): singly diagonally implicit, explicit first stage, L-stable, stiffly
 // accurate. Limits, strings and closed joints are projected after the step. An embedded method of order 3
-// estimates the error. The implicit stages share one matrix. It is computed only if the motion is stiff, and
-// computed again if a stage does not converge with it.
+// estimates the error. The implicit stages share one matrix. The matrix is computed only if the motion is
+// stiff, and computed again if a stage does not converge.
 #pragma once
 
 #include <memory>

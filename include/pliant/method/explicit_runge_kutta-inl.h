@@ -179,9 +179,9 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics
   return {dynamics.model(), std::move(q)};
 }
 
-/// With two estimates e_1 and e_2, whose weights are `error` and `second_error` of the tableau, the error is
-/// e_1^2 / sqrt(e_1^2 + 0.01 e_2^2), as in DOP853 (Hairer, Norsett & Wanner, Solving Ordinary Differential
-/// Equations I, section II.10).
+/// The weights `error` and `second_error` of the tableau give two estimates e_1 and e_2. The error is e_1^2 /
+/// sqrt(e_1^2 + 0.01 e_2^2), as in DOP853 (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations
+/// I, section II.10). Without `second_error` the error is e_1.
 PLIANT_INLINE double ExplicitRungeKutta::estimate_error(double h, const VecX<double>& v) {
   const int count = tableau_->stages + (tableau_->rates_at_end ? 1 : 0);
   auto weighted_norm = [&](const double* weights) {

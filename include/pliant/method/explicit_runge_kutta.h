@@ -48,7 +48,7 @@ class ExplicitRungeKutta : public Integrator {
   MatX<double> q_rates_, v_rates_, powers_;
   VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;
   // State and time of the rates at the end of the last step, if its error estimate has evaluated them
-  // (ButcherTableau::rates_at_end). They are then the first stage of the next step.
+  // (ButcherTableau::rates_at_end). These rates are then the first stage of the next step.
   State last_;
   double last_t_ = 0;
   Workspace<double> extension_work_;  ///< evaluations of the dense output

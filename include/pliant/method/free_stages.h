@@ -5,8 +5,8 @@
 //         + h sum_j a_ij exp(A (c_i - c_j) h) (0, n_j - n_0)
 // For the end of the step the weights b replace a_ij, and for the error estimate those of the estimate. The
 // motion under a constant load is exact. If the nodes c_i decrease from one stage to the next, as in dop853,
-// exp(A (c_i - c_j) h) runs backwards in time, and damped motion grows: such methods do not suit strong
-// damping.
+// exp(A (c_i - c_j) h) runs backwards in time, and damped motion grows. Tableaux with decreasing nodes
+// therefore do not suit strong damping.
 #pragma once
 
 #include <vector>

@@ -31,9 +31,9 @@ class Integrator {
   /// Sets whether parts that deform locally may touch something in the next steps. Only
   /// linearly_implicit uses this.
   virtual void expect_touch(bool) {}
-  /// If the flag is true, replaces M^-1 of each implicit part (implicit/implicit_part.h) in work by the
-  /// response of the part to impulses over the last step (LocalResponse). If the flag is false, restores
-  /// M^-1, which an evaluation needs. work: the evaluation at the end of the step.
+  /// If the flag is true, replaces M^-1 of each implicit part (implicit/implicit_part.h) in work. The
+  /// replacement is the response of the part to impulses over the last step (LocalResponse). If the flag is
+  /// false, restores M^-1, which an evaluation needs. work: the evaluation at the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
@@ -69,7 +69,7 @@ class Integrator {
   double error_ = 0;
 };
 
-/// While the object lives, parts respond to impulses as over a whole step (set_responses).
+/// While the object exists, implicit parts respond to impulses as over a whole step (set_responses).
 class StepResponses {
  public:
   StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)

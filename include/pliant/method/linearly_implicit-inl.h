@@ -1,5 +1,5 @@
 // Function bodies of linearly_implicit.h: a step of ROS2, and a step of linearly implicit Euler that replaces
-// it where stiff parts meet contacts, strings or limits.
+// the step of ROS2 where stiff parts touch something or where strings or limits stop them.
 #pragma once
 
 #include <pliant/method/linearly_implicit.h>

@@ -1,10 +1,10 @@
 // The two-stage Rosenbrock method ROS2 (Verwer, Spee, Blom & Hundsdorfer 1999) on (q, v, work):
 //   (I - gamma h A) k1 = F(u),   (I - gamma h A) k2 = F(u + h k1) - 2 k1,   u+ = u + 3/2 h k1 + 1/2 h k2
-// It is of second order for every A, and L-stable if A is the Jacobian, with gamma = 1 - 1/sqrt(2). A
-// contains q_dot = v for all coordinates. With this term alone undamped oscillations neither grow nor decay
-// for h omega < 2.26. For parts that deform locally A also contains the elasticity and damping of their nodes
-// or modes and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. The
-// difference from the first-order solution u + h k1 estimates the error.
+// with gamma = 1 - 1/sqrt(2). The method is of second order for every A, and L-stable if A is the Jacobian of
+// F. A contains q_dot = v for all coordinates. With this term alone undamped oscillations neither grow nor
+// decay for h omega < 2.26. For parts that deform locally A also contains the elasticity and damping of their
+// nodes or modes and of their global parameters (method/implicit/implicit_part.h). Everything else is
+// explicit. The difference from the first-order solution u + h k1 estimates the error.
 //
 // An impact on a stiff part needs velocities v+ that agree with the displacement in the step,
 // q+ - q = h q_dot(v+). A step of ROS2 does not have this property. If a part that deforms locally may touch
@@ -50,9 +50,9 @@ class LinearlyImplicit final : public Integrator {
   /// Prepares the implicit parts for the calls of filter() in a step, from the evaluation in step.work. The
   /// first call creates the implicit parts. c: gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
-  /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v so that the
-  /// rows of joints, of strings that pull and of limits that push keep their values
-  /// (implicit/project_rates.h).
+  /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v
+  /// (implicit/project_rates.h). The projection keeps the values of the rows of joints, of strings that pull
+  /// and of limits that push.
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
   /// Advances one step of ROS2, from the evaluation to the projection.

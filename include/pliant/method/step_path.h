@@ -18,8 +18,8 @@ struct StepPolynomial {
 
 class StepPath {
  public:
-  /// Cubic Hermite interpolation of q from q and q_dot at both ends, with an error O(h^4). It evaluates no
-  /// accelerations. low, high: the states at the ends; h: the time between low and high, s. The model must
+  /// Cubic Hermite interpolation of q from q and q_dot at both ends, with an error O(h^4). No accelerations
+  /// are evaluated. low, high: the states at the ends; h: the time between low and high, s. The model must
   /// outlive the path.
   StepPath(const Dynamics& dynamics, const State& low, double h, const State& high);
   /// The dense output of a method (Integrator::path).

@@ -17,8 +17,8 @@ inline constexpr int kMaxBlock = 6;
 using NodeOrder = std::vector<int> (*)(const std::vector<int>& first, const std::vector<int>& neighbour);
 /// Returns the approximate minimum degree order, computed by Eigen.
 std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::vector<int>& neighbour);
-/// Returns the order of a maximum cardinality search (Tarjan & Yannakakis 1984). It has no fill-in if an
-/// order without fill-in exists, as for the joint systems of chains and trees.
+/// Returns the order of a maximum cardinality search (Tarjan & Yannakakis 1984). The elimination has no
+/// fill-in if an order without fill-in exists, as for the joint systems of chains and trees.
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 
 /// Minimum number of rows of the dense matrix. Fewer rows are factored by blocks, which costs no more.

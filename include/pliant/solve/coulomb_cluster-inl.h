@@ -36,8 +36,8 @@ inline constexpr double kSweepRegularisation = 1e-14;
 /// clusters and in clusters with point masses. Second value: the compliance of contacts in this second
 /// search, as a fraction of the diagonal of W.
 inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
-/// The result of the search with compliant contacts is preferred if its residual is less than this multiple
-/// of the residual of the first search, because compliant contacts have bounded impulses.
+/// The result of the search with compliant contacts is used if its residual is less than this multiple of the
+/// residual of the first search. The factor is above 1 because impulses of compliant contacts are bounded.
 inline constexpr double kCompliantPreference = 2;
 /// A search stalls if a round leaves more than this fraction of the residual of the round before. A search
 /// that stalls ends if its residual is at most kAcceptableResidual, because only unreasonably large impulses
@@ -282,9 +282,9 @@ PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
   return false;
 }
 
-/// Runs the rounds of sweeps, each followed by Newton's method (not for many contacts with point masses),
-/// until the solution is found, the search stalls or all rounds are done. Returns whether the solution was
-/// found.
+/// Runs the rounds of sweeps until the solution is found, the search stalls or all rounds are done. Newton's
+/// method follows each round, except in clusters with point masses and many contacts. Returns whether the
+/// solution was found.
 PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.

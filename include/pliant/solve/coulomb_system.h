@@ -43,7 +43,7 @@ class CoulombSystem {
   int add_mover(int size);
   /// Adds a contact with coefficient of friction mu. The contact has three rows: the normal and two tangents.
   void add_contact(double mu);
-  /// Adds a single one-sided row. It is stored as a contact whose other two rows are zero.
+  /// Adds a single one-sided row. The row is stored as a contact whose two tangential rows are zero.
   void add_row();
   /// Adds a side of the last contact: J for `size` velocities of a mover, starting at velocity `first` of
   /// that mover. Returns the 3 x size matrix, initially zero. The caller fills it before the next add

@@ -1,6 +1,6 @@
 // The pivots of a factorisation L D L^T of a symmetric positive semi-definite matrix. A row that depends on
-// earlier rows has a vanishing pivot. It is excluded: its unknown is 0, and the other rows are solved without
-// it. S is double or Dual<1>.
+// earlier rows has a vanishing pivot. The dependent row is excluded: its unknown is 0, and the other rows are
+// solved without this row. S is double or Dual<1>.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Factorisation L D L^T of a small symmetric mass matrix M, Eq. (11), in which some coordinates may have no
 // inertia. A coordinate whose pivot vanishes moves no mass at present (for example the direction of a bend
-// with zero angle). It is excluded: its acceleration is 0, and the other coordinates are solved without it.
+// with zero angle). This coordinate is excluded: its acceleration is 0, and the other coordinates are solved
+// without it.
 #pragma once
 
 #include <array>

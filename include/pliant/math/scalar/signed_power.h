@@ -19,7 +19,7 @@ struct Trig {
   U log_abs{};  ///< log |x|; kLogZero for x = 0
 };
 
-/// Represents log 0. It is finite, so that 0 * log 0 is 0; exp(eps * kLogZero) is 0 for all admissible
+/// Represents log 0. The value is finite, so that 0 * log 0 is 0; exp(eps * kLogZero) is 0 for all admissible
 /// exponents.
 inline constexpr double kLogZero = -1e6;
 

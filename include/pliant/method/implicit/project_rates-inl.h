@@ -34,9 +34,9 @@ inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows (of strings that
-/// pull and limits that push) have zero value. Three passes refine x if the factor of the joints is not
-/// accurate.
+/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows have zero value.
+/// pushed: the rows of strings that pull and of limits that push. Three passes refine x if the factor of the
+/// joints is not accurate.
 template <int Max>
 void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
              VecMax<double, Max>& x) {

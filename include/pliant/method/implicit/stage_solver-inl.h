@@ -25,8 +25,8 @@ namespace stage_solver {
 inline constexpr double kSlowContraction = 0.9;
 /// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
-/// Without the matrix a stage may use kMaxIterations iterations, or kFreeIterations for each velocity of the
-/// largest cluster if that is more, because the matrix costs two evaluations for each of these velocities.
+/// Number of iterations of a stage without the matrix, for each velocity of the largest cluster; at least
+/// kMaxIterations in all. The matrix costs two evaluations for each of these velocities.
 inline constexpr double kFreeIterations = 0.5;
 /// Largest number of matrices that are computed for one stage, besides that at the start of the step.
 inline constexpr int kMaxMatrices = 4;

@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// While the object lives, impulses on parts act in this metric. If the state is not finite, the metric does
+/// While the object exists, impulses on parts act in this metric. If the state is not finite, the metric does
 /// not change.
 class StiffProjectionMetric {
  public:
