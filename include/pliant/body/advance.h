@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Computes q <- q (+) h v for all parts that have coordinates; h: s. c, q_s and q_d increase by h times their
-/// velocities. The quaternions change by theta <- theta o exp(h omega / 2), where o is the product of
+/// Computes q <- q (+) h v for all parts that have coordinates; h: s. c, q_s and q_d increase by h times
+/// their velocities. The quaternions change by theta <- theta o exp(h omega / 2), where o is the product of
 /// quaternions.
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 

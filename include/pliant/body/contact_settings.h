@@ -71,8 +71,8 @@ struct ContactPair {
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
-/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint, plane or
-/// obstacle switches, or the end of a spring or joint, a force, a torque, a rest value, a plane or gravity
+/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint, plane
+/// or obstacle switches, or the end of a spring or joint, a force, a torque, a rest value, a plane or gravity
 /// changes. A part stays awake while its drive changes, or while it touches a part or plane with prescribed
 /// motion. A force by a function (PointForce::custom) counts as changing at all times.
 struct Sleep {

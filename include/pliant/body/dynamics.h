@@ -101,7 +101,8 @@ class Dynamics {
   /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
   void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
   /// Returns the kinetic and potential energy of some parts and of all springs with an end on one of these
-  /// parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are ignored.
+  /// parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are
+  /// ignored.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;
   /// Returns energies, works and momenta of a state. Ledger::balance is zero; the caller sets it. work

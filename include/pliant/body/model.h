@@ -1,5 +1,5 @@
-// Model: a MultiBody that is prepared for a run. A model contains constants only, in flat arrays; the functions
-// of the dynamics do not change the model.
+// Model: a MultiBody that is prepared for a run. A model contains constants only, in flat arrays; the
+// functions of the dynamics do not change the model.
 #pragma once
 
 #include <algorithm>
@@ -154,9 +154,9 @@ class Model {
   const std::vector<double>& switch_times() const { return switch_times_; }
   /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
-  /// Returns the first kink of the prescribed motion of an end of a joint, later than `after` and no later than
-  /// `until` (s), while the joint acts: over all joints, or for one joint. At a kink the position or its rate
-  /// jumps. If there is no kink, the time of the result is infinite.
+  /// Returns the first kink of the prescribed motion of an end of a joint, later than `after` and no later
+  /// than `until` (s), while the joint acts: over all joints, or for one joint. At a kink the position or its
+  /// rate jumps. If there is no kink, the time of the result is infinite.
   Kink next_kink(double after, double until) const;
   Kink next_kink(const JointModel& joint, double after, double until) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints
@@ -183,8 +183,9 @@ class Model {
   /// motion, the result does not depend on t.
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
-  /// Returns the position of a material point of a part, m, world. at: the weights of the point among the nodes
-  /// (node_weights()), which make repeated calls faster. PlacedPoint (placed_point.h) keeps these weights.
+  /// Returns the position of a material point of a part, m, world. at: the weights of the point among the
+  /// nodes (node_weights()), which make repeated calls faster. PlacedPoint (placed_point.h) keeps these
+  /// weights.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   Vec3<double> world_point(const State& state, int part, const Material<double>& m,
                            const NodeWeights& at) const;

@@ -20,8 +20,8 @@
 
 namespace pliant {
 
-/// A linear spring and damper between two points a and b, with stiffness k and damping c. d is the vector from
-/// a to b. With rest length 0 the force on b is -k d - c d_dot. With a rest length > 0 the force on b is
+/// A linear spring and damper between two points a and b, with stiffness k and damping c. d is the vector
+/// from a to b. With rest length 0 the force on b is -k d - c d_dot. With a rest length > 0 the force on b is
 /// -(k (|d| - rest length) + c times the rate of |d|) d / |d|, and zero while |d| = 0. The force on a is
 /// opposite.
 struct Spring {

@@ -38,9 +38,9 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
-/// start). A contact is stored only if it shares a moving part with other contacts and its impulse is not zero.
-/// Contacts on single nodes are not stored, nor are contacts that moving parts connect with such a contact: their
-/// impulses start at zero. The impulses of limits and strings start at zero too.
+/// start). A contact is stored only if it shares a moving part with other contacts and its impulse is not
+/// zero. Contacts on single nodes are not stored, nor are contacts that moving parts connect with such a
+/// contact: their impulses start at zero. The impulses of limits and strings start at zero too.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a

@@ -116,8 +116,8 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
     if (stalled > 0 && now <= detail::kRoundingResidual * size) break;
     if (stalled == detail::kMaxStalledRefinements) {
       // The residual is on rows that depend on other rows and contradict them, for instance while joints are
-      // slightly open within a step. Each refinement has added about the same increment to the forces of these
-      // rows: remove all i + 1 increments.
+      // slightly open within a step. Each refinement has added about the same increment to the forces of
+      // these rows: remove all i + 1 increments.
       z -= (i + 1) * more;
       break;
     }

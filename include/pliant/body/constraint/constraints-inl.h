@@ -72,8 +72,8 @@ PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<
   return motion;
 }
 
-/// Adds (C_x L)^T of a port to C_q^T of its side, with L = R [I, -[p]x, J] of Eq. (9). For a part that deforms
-/// locally, L also has the block R for d_dot of the port. C_x: rows x 3, by columns.
+/// Adds (C_x L)^T of a port to C_q^T of its side, with L = R [I, -[p]x, J] of Eq. (9). For a part that
+/// deforms locally, L also has the block R for d_dot of the port. C_x: rows x 3, by columns.
 template <class S>
 void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, int rows, const S* C_x,
                     S* Cq) {

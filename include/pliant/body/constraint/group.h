@@ -1,7 +1,7 @@
 // A group: one part without joints, or the parts of an island. The velocities v_r = (R^T c_dot, omega,
-// q_s_dot) of its parts, one after the other, form one vector x. For a part that deforms locally, d_dot of the
-// points at its joints follows its v_r. Joints and one-sided rows (limits of parameters, strings)
-// act on x.
+// q_s_dot) of its parts, one after the other, form one vector x. For a part that deforms locally, d_dot of
+// the points at its joints follows its v_r. Joints and one-sided rows (limits of parameters, strings) act on
+// x.
 #pragma once
 
 #include <algorithm>
@@ -77,10 +77,10 @@ class Group {
   }
   /// Returns whether a result of correct() needs iterative refinement.
   bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
-  /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with
-  /// W_c lambda = -rows. Returns lambda, which the next call overwrites. W_c may be the matrix of
-  /// an earlier configuration. Then lambda is approximate, but the forces act along the present C_q^T, so that
-  /// the two ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
+  /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with W_c
+  /// lambda = -rows. Returns lambda, which the next call overwrites. W_c may be the matrix of an earlier
+  /// configuration. Then lambda is approximate, but the forces act along the present C_q^T, so that the two
+  /// ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
   /// the factorisation.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const;
 

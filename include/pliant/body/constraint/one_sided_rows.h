@@ -1,6 +1,6 @@
-// One-sided rows of a group and the pushes (forces or impulses) that satisfy these rows: the least change of x
-// (group.h) in the mass metric. Each push lambda is >= 0, and zero unless its row is at its bound. The response
-// to a push includes the reactions of the joints of the group.
+// One-sided rows of a group and the pushes (forces or impulses) that satisfy these rows: the least change of
+// x (group.h) in the mass metric. Each push lambda is >= 0, and zero unless its row is at its bound. The
+// response to a push includes the reactions of the joints of the group.
 #pragma once
 
 #include <array>

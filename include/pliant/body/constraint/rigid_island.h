@@ -57,10 +57,10 @@ struct RigidWorkspace {
 
 class RigidIsland {
  public:
-  /// Returns whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in all
-  /// six velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its joints
-  /// must be ball joints between two parts, or between a part and a fixed point. The joint system must be
-  /// solved by the blocks of W_c, not by the augmented matrix.
+  /// Returns whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in
+  /// all six velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its
+  /// joints must be ball joints between two parts, or between a part and a fixed point. The joint system must
+  /// be solved by the blocks of W_c, not by the augmented matrix.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
@@ -69,9 +69,9 @@ class RigidIsland {
   int island() const { return island_; }
 
   /// Computes v_dot of the parts at (q, v) with all joints closed, and the factor of W_c, as
-  /// Dynamics::accelerations() does. gravity: m/s^2, world. work.joints.rank: the rule for dependent rows of the
-  /// factor. For a part with loads,
-  /// work.parts[i].f must contain the generalised forces of the loads on v_r.
+  /// Dynamics::accelerations() does. gravity: m/s^2, world. work.joints.rank: the rule for dependent rows of
+  /// the factor. For a part with loads, work.parts[i].f must contain the generalised forces of the loads on
+  /// v_r.
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
@@ -90,8 +90,8 @@ class RigidIsland {
 
   /// Adds impulses to v that close the joints at the end of a step of length h (s). The impulses act at the
   /// configuration of the last evaluation and are found with its factor. q_end() returns the coordinates at
-  /// the end of the step for the present v. Returns false, with v unchanged, if the iteration converges slowly or is
-  /// not finite.
+  /// the end of the step for the present v. Returns false, with v unchanged, if the iteration converges
+  /// slowly or is not finite.
   bool close_ahead(const Rounding& allowed, double h, const BlockFactor<double>& W_c, RigidWorkspace& now,
                    VecX<double>& v, const std::function<const VecX<double>&()>& q_end) const;
 

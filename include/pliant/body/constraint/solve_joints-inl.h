@@ -85,8 +85,8 @@ class IslandForces {
  private:
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
-  /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the forces
-  /// to lambda: Eq. (14) after elimination of M.
+  /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the
+  /// forces to lambda: Eq. (14) after elimination of M.
   template <class Which>
   void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
     const int refinements = group.is_rough() ? 2 : 0;
@@ -186,8 +186,8 @@ inline void add_strings(const Model& model, const Island& island, const Constrai
   }
 }
 
-/// Returns the pushes lambda on the rows `pushed`, with their derivatives, from the small dense system of these
-/// rows.
+/// Returns the pushes lambda on the rows `pushed`, with their derivatives, from the small dense system of
+/// these rows.
 inline VecX<Dual<1>> solve_pushes(const Model& model, const Island& island,
                                   const IslandForces<Dual<1>>& forces,
                                   const ConstraintWorkspace<Dual<1>>& joints,
