@@ -71,10 +71,11 @@ struct ContactPair {
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
-/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint, plane
-/// or obstacle switches, or the end of a spring or joint, a force, a torque, a rest value, a plane or gravity
-/// changes. A part stays awake while its drive changes, or while it touches a part or plane with prescribed
-/// motion. A force by a function (PointForce::custom) counts as changing at all times.
+/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes. The drive
+/// changes when a joint, plane or obstacle switches, or when the prescribed end of a spring or joint, a
+/// force, a torque, a rest value, a plane or gravity changes. A part stays awake while its drive changes, or
+/// while it touches a part or plane with prescribed motion. A force by a function (PointForce::custom) counts
+/// as changing at all times.
 struct Sleep {
   double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; must be > 0
   double after = 0.5;  ///< time at rest after which a part falls asleep, s; must be > 0

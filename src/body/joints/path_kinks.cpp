@@ -7,8 +7,8 @@
 namespace pliant {
 
 namespace {
-/// A kink before the time at which a joint switches on counts as a kink at that time if the difference is
-/// less than kUlps times the machine epsilon times this time.
+/// A joint switches on at the time `on`. A kink before `on` counts as a kink at `on` if it is earlier by less
+/// than kUlps times the machine epsilon times |on|.
 constexpr double kUlps = 8;
 }  // namespace
 
