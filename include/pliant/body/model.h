@@ -172,7 +172,7 @@ class Model {
   /// Sets State::at_limit of all parameters from their values.
   void record_limits(State& state) const;
   /// Returns the values and rates of all parameters of a part in a state. For a part without coordinates,
-  /// returns its rest values of time 0.
+  /// returns its rest values of time 0 and zero rates.
   ParameterValues<double> values(const State& state, int part) const;
   /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
