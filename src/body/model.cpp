@@ -16,13 +16,14 @@ namespace pliant {
 
 namespace {
 
-/// Number of multiplications below which the factorisation by blocks is always faster than that of the
-/// augmented matrix.
+/// Largest number of multiplications for which the factorisation by blocks is used without a comparison with
+/// the factorisation of the augmented matrix.
 constexpr long kCheapBlocks = 10000;
 /// Number of pairs of joints on common parts, summed over an island, above which the blocks of W_c are not
 /// considered.
 constexpr double kMaxJointPairs = 1e7;
-/// Ratio of the smallest to the largest mass of the parts of an island below which solutions are refined.
+/// Ratio of the smallest to the largest mass of the parts of an island, below which lambda is refined
+/// iteratively.
 constexpr double kUneven = 1e-4;
 
 }  // namespace
@@ -372,8 +373,8 @@ void Model::add_couplings(Island& island, const SidesOfParts& sides_of) {
 }
 
 namespace {
-/// Adds to the state the motion of the frame and of the parameters that is contained in the local
-/// displacements and their rates at time 0.
+/// Adds to the state the change of the frame and of the parameters, and their rates, that the given local
+/// displacements and their rates at time 0 contain.
 void displace_frame(const PartModel& m, State& state) {
   const Mat3<double> R = m.part->R0().toRotationMatrix();
   if (const VecX<double>& rate = m.local->initial_frame_rate(); rate.size() > 0) {

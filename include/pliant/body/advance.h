@@ -6,8 +6,9 @@
 
 namespace pliant {
 
-/// Computes q <- q (+) h v for all parts; h: s. c, q_s and q_d increase by h times their velocities. The
-/// quaternions change by theta <- theta o exp(h omega / 2), where o is the product of quaternions.
+/// Computes q <- q (+) h v for all parts that have coordinates; h: s. c, q_s and q_d increase by h times
+/// their velocities. The quaternions change by theta <- theta o exp(h omega / 2), where o is the product of
+/// quaternions.
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
 /// Computes q <- q (+) h v for the frame and the global parameters of one part. v: (c_dot, omega, q_s_dot) of
@@ -32,9 +33,9 @@ VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<co
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
 /// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). For a part that
-/// deforms locally, x contains v_r and the velocities of the points of its joints only. The function finds
-/// the impulses, on v_r and at these points, that change the present velocities to x. The velocities of its
-/// local coordinates change by the response to these impulses.
+/// deforms locally, x contains only v_r and d_dot of the points of its joints. The function finds the
+/// impulses, on v_r and at these points, that change the present velocities to x. The velocities of the local
+/// coordinates change by the response to these impulses.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by h times the
@@ -45,7 +46,8 @@ void advance_part_in_group(const PartModel& m, const PartWorkspace<double>& w,
 /// Normalises every quaternion.
 void normalise_rotations(const Model& model, VecX<double>& q);
 
-/// Sets velocities that had no inertia at the last evaluation, for instance rates of parameters, to zero.
+/// Sets the velocities that had no inertia at the last evaluation to zero, for instance the rate of a
+/// parameter that moves no mass.
 void zero_inertialess_velocities(const Model& model, const Workspace<double>& work, VecX<double>& v);
 
 }  // namespace pliant

@@ -14,8 +14,8 @@
 
 namespace pliant {
 
-/// Whether an object that is present from `on` until `off` (s) is present in a step that ends at t (s). Steps
-/// end at the times `on` and `off`, within rounding.
+/// Returns whether an object that is present from `on` until `off` (s) is present in a step that ends at t
+/// (s). The function assumes that steps end at the times `on` and `off`, within rounding.
 inline bool present_before(double t, double on, double off) {
   constexpr double kRounding = 1e-12;
   return (on <= 0 || t > on * (1 + kRounding)) && t <= off * (1 + kRounding);
@@ -65,19 +65,20 @@ struct ContactGroup {
 /// and among these the last.
 struct ContactPair {
   std::string a, b;
-  bool touch = true;                                ///< false: the two pass through each other
+  bool touch = true;                                ///< false: a and b pass through each other
   std::optional<double> friction{}, restitution{};  ///< default: the values of ContactSettings
 };
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
-/// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not searched
-/// for. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint, plane or
-/// obstacle switches, or the end of a spring or joint, a force, a torque, a rest value, a plane or gravity
-/// changes. A part stays awake while its drive changes, or while it touches a part or plane with prescribed
-/// motion. A force by a function (PointForce::custom) counts as changing at all times.
+/// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
+/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes. The drive
+/// changes when a joint, plane or obstacle switches, or when the prescribed end of a spring or joint, a
+/// force, a torque, a rest value, a plane or gravity changes. A part stays awake while its drive changes, or
+/// while it touches a part or plane with prescribed motion. A force by a function (PointForce::custom) counts
+/// as changing at all times.
 struct Sleep {
-  double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; above 0
-  double after = 0.5;  ///< time at rest after which a part falls asleep, s; above 0
+  double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; must be > 0
+  double after = 0.5;  ///< time at rest after which a part falls asleep, s; must be > 0
 };
 
 struct ContactSettings {
@@ -91,8 +92,8 @@ struct ContactSettings {
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
   std::optional<Sleep> sleep{};  ///< not given: no part sleeps
-  /// Longest step, s, above 0, in a run to a tolerance of 5e-4 or less, while resting contacts prevent the
-  /// control of the error: with many parts, with parts that deform locally, or with point forces. Larger
+  /// Longest step, s, in a run to a tolerance of 5e-4 or less, while resting contacts prevent the control of
+  /// the error: with many parts, with parts that deform locally, or with point forces. Must be > 0. Larger
   /// tolerances allow longer steps (contact/longest_contact_step.h).
   double longest_step = 2e-3;
 };

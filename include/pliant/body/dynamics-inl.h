@@ -89,7 +89,7 @@ PLIANT_INLINE void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<do
   work.without_inertia.resize(model_->parts().size());
   const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
-  // Time 0 stands for any time: the positions of a part with coordinates depend on q and v alone.
+  // The time 0 has no effect: the positions of a part with coordinates depend on q and v alone.
   detail::evaluate_positions<double>(m, 0, q, v, w);
   detail::evaluate_mass<double>(m, w);
 }

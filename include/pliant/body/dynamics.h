@@ -16,13 +16,13 @@ namespace pliant {
 template <class S>
 struct Evaluation;
 
-/// The action of a joint on the part of its first side: a force (N) at the first point of the joint, and a
-/// torque (N m) about that point, world.
+/// The action of a joint on its first side (a part, or the world): a force (N) at the first point of the
+/// joint, and a torque (N m) about that point. Both are in the world frame.
 struct Wrench {
   Vec3<double> force, torque;
 };
 
-/// A direction in the space of states: derivatives of q (of quaternions too) and of v.
+/// A direction in the space of states: the derivatives of all entries of q, quaternions included, and of v.
 struct StateDirection {
   VecX<double> q, v;
 };
@@ -31,7 +31,7 @@ struct StateDirection {
 struct JointPolicy {
   /// Whether BaumgarteRule::automatic chooses gains that depend on the step length.
   bool step_consistent = true;
-  /// Whether closed joints are projected after each step; they have no Baumgarte terms then.
+  /// Whether closed joints are projected after each step. Closed joints then have no Baumgarte terms.
   bool projected = false;
   /// Whether steps may be of first order. Baumgarte's terms then do not close the gap of a rotating joint
   /// completely. The joint becomes closed with the small gap that remains (close_joints() in
@@ -65,9 +65,9 @@ class Dynamics {
   /// and joints keep values of earlier calls, or zeros.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
              Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// Computes frames and attachment points of the parts of an island, and C, C_dot, bias and C_q of its
-  /// joints, at (t, q, v). Also sets the modes of these joints, and port_force of parts with loads to zero.
-  /// No other field of work changes.
+  /// Computes frames and attachment points of the parts of an island, and C, C_dot, bias (constraints.h) and
+  /// C_q of its joints, at (t, q, v). Also sets the modes of these joints, and sets port_force of parts with
+  /// loads to zero. No other field of work changes.
   void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
                        const std::vector<JointMode>& modes, const Island& island,
                        Workspace<double>& work) const;
@@ -83,9 +83,9 @@ class Dynamics {
   /// Returns the action of a joint for given lambda. lambda: forces (N) of the rows of all joints, or
   /// impulses (N s), for which the result is an impulse too. work: as evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
-  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. It is taken with fixed modes of
-  /// joints, a fixed set of parameters that limits push, and a fixed set of strings that pull. Throws
-  /// std::logic_error for a part that deforms locally.
+  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The modes of joints, the set of
+  /// parameters that limits push and the set of strings that pull are constant in this derivative. Throws
+  /// std::logic_error if a part deforms locally.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// Returns the same derivative, from an existing evaluation. work: as accelerations(t, q, v, ...) left it;
   /// dual_work: scratch storage, kept from call to call; its contents are ignored.
@@ -100,7 +100,8 @@ class Dynamics {
                        Workspace<double>& work) const;
   /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
   void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
-  /// Returns the energy of some parts and of the springs at them, J. work: scratch storage; its contents are
+  /// Returns the kinetic and potential energy of some parts and of all springs with an end on one of these
+  /// parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are
   /// ignored.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;
@@ -112,8 +113,8 @@ class Dynamics {
   /// Returns the ledger of the coordinates and velocities of a state at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
   /// Evaluates the accelerations and returns the name of the first term that is not finite, in the order of
-  /// the evaluation; an empty text if all terms are finite. If q or v is not finite, returns the name of its
-  /// first such entry without an evaluation.
+  /// the evaluation; an empty text if all terms are finite. If an entry of q or v is not finite, returns the
+  /// name of the first of these entries, without an evaluation.
   std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                        Workspace<double>& work) const;
 

@@ -1,5 +1,5 @@
-// The energy ledger and the momenta of a state: energy - energy at the start = work so far, within the error
-// of the steps.
+// The energy ledger and the momenta of a state. The energy minus the energy at the start equals the work so
+// far, within the error of the steps.
 #pragma once
 
 #include <pliant/body/state.h>

@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns material points around m, near ones first. The points of a shell are on its surface.
+/// Returns material points around m, the nearest ones first. For a shell, all points are on its surface.
 inline std::vector<Material<double>> points_around(const Material<double>& m, const Part& part) {
   constexpr double step = 0.3;
   const bool ring = part.shape().mesh() == MeshPattern::torus;

@@ -1,7 +1,7 @@
 // Directions that are fixed in the material of a part: a frame at a material point x_0, defined by three
-// points x_1, x_2, x_3 around it. The axes are linear combinations of the differences x_i - x_0,
-// orthonormalised in their order, so that they follow the part when it turns and deforms. The axes of a frame
-// of the world are constant.
+// points x_1, x_2, x_3 around x_0. The axes are linear combinations of the differences x_i - x_0,
+// orthonormalised in their order. They therefore follow the rotation and the deformation of the part. The
+// axes of a frame of the world are constant.
 #pragma once
 
 #include <vector>
@@ -78,9 +78,9 @@ struct FramedPoint {
   MaterialFrame frame;
 };
 
-/// Returns a frame at a point. axes: the axes of the frame at rest, as the columns of a rotation, in the
-/// frame of the part; in the world for a point of the world. The part must be prepared. Throws
-/// std::invalid_argument if no three directions around the point are linearly independent.
+/// Returns a frame at a point. axes: the axes of the frame for the undeformed part, as the columns of a
+/// rotation, in the frame of the part; in the world for a point of the world. The part must be prepared.
+/// Throws std::invalid_argument if no three directions around the point are linearly independent.
 FramedPoint framed(const Point& at, const Mat3<double>& axes);
 
 /// Returns a rotation whose first column is along a direction (of any length > 0).

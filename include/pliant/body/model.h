@@ -1,5 +1,5 @@
-// Model: a MultiBody that is prepared for a run. It contains constants only, in flat arrays; the functions of
-// the dynamics do not change it.
+// Model: a MultiBody that is prepared for a run. A model contains constants only, in flat arrays; the
+// functions of the dynamics do not change the model.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct PartModel {
   const Part* part;
   int q0, v0;       ///< first entries in q and v; -1 for a part that is fixed or has a prescribed motion
   int n_s;          ///< number of dynamic global parameters
-  int island = -1;  ///< number of its island of joined parts; -1: no joints or no coordinates
+  int island = -1;  ///< number of its island; -1: no joints or no coordinates
   int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none
   int limit0;                      ///< first entry in State::at_limit
   bool loaded = false;             ///< whether springs, forces or torques act on it
@@ -34,7 +34,7 @@ struct PartModel {
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
   VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;  ///< a velocity with an inertia up to this has none, see SymmetricFactor
+  VecX<double> inertia_floor;  ///< `floor` of SymmetricFactor: a velocity with at most this inertia has none
   std::vector<Range> limits;   ///< limits of each dynamic parameter
   /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
   /// shape s.
@@ -43,7 +43,7 @@ struct PartModel {
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
   std::vector<int> port_place;                ///< number of each port in `joint_points`; -1: none
-  Eigen::Matrix3d R0;                         ///< orientation at time 0, which a fixed part keeps
+  Eigen::Matrix3d R0;                         ///< orientation at time 0; constant for a fixed part
   Part::Use use;                              ///< locks the part against changes
 
   /// Returns the rest values of the dynamic parameters at time t (s).
@@ -56,7 +56,7 @@ struct PartModel {
   int n_d() const { return local == nullptr ? 0 : static_cast<int>(local->n_d()); }
   int n_q() const { return 7 + n_s + n_d(); }  ///< number of coordinates in q
   int n_v() const { return 6 + n_s + n_d(); }  ///< number of velocities in v
-  /// Number of velocities of the part in a group (constraint/group.h): v_r, and d_dot at its joints.
+  /// Number of velocities of the part in a group (constraint/group.h): v_r, and d_dot at `joint_points`.
   int n_x() const { return 6 + n_s + 3 * static_cast<int>(joint_points.size()); }
 };
 
@@ -80,7 +80,7 @@ struct TorqueModel {
   int against;  ///< part with the opposite torque; -1: none
 };
 
-/// A side of a joint on a part with coordinates. A joint whose two sides are on one part has one JointSide.
+/// A side of a joint on a part with coordinates. A joint with both sides on the same part has one JointSide.
 struct JointSide {
   int part;
   int place;   ///< number of the part in its island
@@ -125,7 +125,7 @@ struct Island {
   int rows = 0;              ///< number of rows of `joints`
   int rigid = -1;            ///< its number among the rigid islands; -1: none
   bool augmented = false;    ///< whether the augmented matrix of Eq. (14) is factored, not the blocks of W_c
-  bool uneven = false;       ///< whether masses differ so much that solutions are refined
+  bool uneven = false;       ///< whether masses differ so much that lambda needs iterative refinement
   BlockPattern pattern;      ///< pattern of the blocks of W_c, if they are factored
   std::vector<Coupling> couplings;  ///< sorted by later_joint()
   long factor_values = 0;           ///< number of values in the factor
@@ -154,9 +154,9 @@ class Model {
   const std::vector<double>& switch_times() const { return switch_times_; }
   /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
-  /// Returns the first kink, later than `after` and no later than `until` (s), of the motion of a prescribed
-  /// end of a joint while the joint acts: over all joints, or for one joint. At a kink the position or its
-  /// rate jumps. Without a kink its time is infinite.
+  /// Returns the first kink of the prescribed motion of an end of a joint, later than `after` and no later
+  /// than `until` (s), while the joint acts: over all joints, or for one joint. At a kink the position or its
+  /// rate jumps. If there is no kink, the time of the result is infinite.
   Kink next_kink(double after, double until) const;
   Kink next_kink(const JointModel& joint, double after, double until) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints
@@ -171,8 +171,8 @@ class Model {
   State initial_state() const;
   /// Sets State::at_limit of all parameters from their values.
   void record_limits(State& state) const;
-  /// Returns the values and rates of all parameters of a part in a state; of a part without coordinates, its
-  /// rest values.
+  /// Returns the values and rates of all parameters of a part in a state. For a part without coordinates,
+  /// returns its rest values of time 0 and zero rates.
   ParameterValues<double> values(const State& state, int part) const;
   /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
@@ -183,15 +183,16 @@ class Model {
   /// motion, the result does not depend on t.
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
-  /// Returns the position of a material point of a part, m, world. Repeated calls are faster with the weights
-  /// of the point among the nodes, or as a PlacedPoint.
+  /// Returns the position of a material point of a part, m, world. at: the weights of the point among the
+  /// nodes (node_weights()), which make repeated calls faster. PlacedPoint (placed_point.h) keeps these
+  /// weights.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   Vec3<double> world_point(const State& state, int part, const Material<double>& m,
                            const NodeWeights& at) const;
   /// Returns the weights of a point, with its patch, among the nodes of its part; empty for a part without
   /// local deformation.
   static NodeWeights node_weights(const Point& point);
-  /// Returns the positions of the nodes of a part that deforms locally, body frame, m.
+  /// Returns the positions of the nodes of a part that deforms locally, body frame, m, one row per node.
   Nodes node_positions(const State& state, int part) const;
   /// Whether a part is motionless: it is fixed without prescribed motion, or it sleeps.
   bool is_motionless(const State& state, int part) const {

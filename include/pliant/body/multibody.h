@@ -1,4 +1,4 @@
-// MultiBody: parts, joints and loads. A library user or a scene fills it in; Model prepares it for a run.
+// MultiBody: parts, joints and loads. A library user or a scene adds them; Model prepares them for a run.
 #pragma once
 
 #include <functional>
@@ -20,9 +20,10 @@
 
 namespace pliant {
 
-/// A linear spring and damper between two points; d leads from a to b. With rest length 0 the force on b is
-/// -k d - c d_dot. With a rest length > 0 it is -(k (|d| - length) + c d|d|/dt) along d, and zero while |d| =
-/// 0. The force on a is opposite.
+/// A linear spring and damper between two points a and b, with stiffness k and damping c. d is the vector
+/// from a to b. With rest length 0 the force on b is -k d - c d_dot. With a rest length > 0 the force on b is
+/// -(k (|d| - rest length) + c times the rate of |d|) d / |d|, and zero while |d| = 0. The force on a is
+/// opposite.
 struct Spring {
   std::string name;
   Point a, b;
@@ -40,13 +41,13 @@ struct PointForce {
   TimeVector force;  ///< N
   Frame frame = Frame::world;
   /// A force by a function of the library user, which replaces `force`: (t, position and velocity in the
-  /// world) -> N in the world. Directional derivatives (Dynamics::jvp) treat the force as constant. Within
-  /// steps, the processor replaces numbers below 2e-308 by zero.
+  /// world) -> N in the world. Directional derivatives (Dynamics::jvp) treat the force as constant. During
+  /// a step, the processor replaces numbers of magnitude below 2e-308 by zero.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
-/// A torque on the rotation of a part's frame. If there is a part `against`, the opposite torque acts on that
-/// part: the torque is internal, like that of a motor or a muscle, and conserves the total momenta.
+/// A torque on the frame of a part. If there is a part `against`, the opposite torque acts on this part. The
+/// torque is then internal, as the torque of a motor or a muscle, and conserves the total momenta.
 struct Torque {
   std::string name;
   const Part* part = nullptr;
@@ -63,7 +64,8 @@ class MultiBody {
   JointSolver joint_solver;
   ContactSettings contact;
 
-  /// Adds a part; the reference stays valid. Throws std::invalid_argument if the name is in use or empty.
+  /// Adds a part. Returns a reference to the part, valid as long as the MultiBody. Throws
+  /// std::invalid_argument if the name is in use or empty.
   template <class P, class... Args>
   P& add(std::string name, Args&&... args) {
     auto part = std::make_unique<P>(std::move(name), std::forward<Args>(args)...);
@@ -101,12 +103,12 @@ class MultiBody {
   Joint& join(std::unique_ptr<Joint> joint);
   /// Adds the point-to-point joint: two points coincide.
   Joint& ball(std::string name, Point a, Point b);
-  /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Rest values
-  /// and placements of its parts must be set before. Throws std::invalid_argument for an unknown type or an
-  /// invalid setting.
+  /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Prepares its
+  /// parts; their rest values and placements must be set before the call. Throws std::invalid_argument for an
+  /// unknown type or an invalid setting.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);
-  /// Adds a hinge. axis: the direction of its pin in the frame of b's part (or in the world). The direction
-  /// in a's part follows from the placement of the undeformed parts.
+  /// Adds a hinge. axis: the direction of its pin in the frame of the part of b, or in the world if b is a
+  /// point of the world. The direction in the part of a follows from the placement of the undeformed parts.
   Joint& hinge(std::string name, Point a, Point b, const Vec3<double>& axis);
   /// Adds a weld, which keeps the relative placement of the undeformed parts.
   Joint& weld(std::string name, Point a, Point b);
@@ -115,8 +117,8 @@ class MultiBody {
   /// activates contact. Throws std::invalid_argument if the normal has no direction or the name is in use.
   ContactPlane& plane(std::string name, TimeVector point, const Vec3<double>& normal);
   /// Adds an immobile triangle mesh (vertices: m, world; triangles: counter-clockwise seen from the free
-  /// side) and activates contact. Throws std::invalid_argument if the name is in use; Simulation
-  /// checks the mesh.
+  /// side) and activates contact. Throws std::invalid_argument if the name is in use. The constructor of
+  /// Simulation checks the mesh.
   ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
   /// Adds a rectangle without thickness that is solid from both sides. middle: m, world. orientation: from
   /// the frame of the rectangle to the world. The x and y axes of this frame are along the edges; half_x and

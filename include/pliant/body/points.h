@@ -18,7 +18,7 @@ struct Point {
 };
 
 /// Returns the first kink (math/time_function.h) of the prescribed motion of a point, later than `after` and
-/// no later than `until` (s). Points of the world and parts with prescribed motion can have kinks.
+/// no later than `until` (s). If there is no kink, the time of the result is infinite.
 inline Kink first_kink(const Point& point, double after, double until) {
   if (point.part == nullptr) return point.world.first_kink(after, until);
   const PrescribedMotion* motion = point.part->motion();

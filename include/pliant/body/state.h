@@ -38,8 +38,9 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
-/// start). Only contacts that share a moving part with others are stored. The impulses of limits and strings
-/// start at zero, and so do those of contacts on single nodes and of contacts that share a part with them.
+/// start). A contact is stored only if it shares a moving part with other contacts and its impulse is not
+/// zero. Contacts on single nodes are not stored, nor are contacts that moving parts connect with such a
+/// contact: their impulses start at zero. The impulses of limits and strings start at zero too.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
@@ -51,7 +52,7 @@ struct State {
   double start = 0;       ///< time of step 0, s
   double h = 0;           ///< step length, s; if errors are controlled, that of the next step
   std::int64_t step = 0;  ///< number of steps since start; time is start + step * h
-  double error = 0;       ///< error of the last step, in tolerances; 0 if it is not measured
+  double error = 0;       ///< error of the last step divided by the tolerance; 0 if it is not measured
   /// Largest violation of the contact laws by the impulses of the last step, m/s.
   double contact_residual = 0;
   VecX<double> q;  ///< coordinates of all parts: c (3), quaternion w x y z (4), q_s, q_d of each
@@ -60,8 +61,8 @@ struct State {
   /// Of each dynamic parameter: -1 at its lower limit, 1 at its upper limit, 0 between.
   std::vector<std::int8_t> at_limit;
   std::vector<JointMode> joints;  ///< mode of each joint
-  /// Of each part: time at rest, s. A negative number means that the part sleeps; parts with equal numbers
-  /// fell asleep together. Empty if parts cannot sleep. Code that moves a sleeping part must wake it.
+  /// Of each part: time at rest, s. A negative number means that the part sleeps; parts with equal negative
+  /// numbers fell asleep together. Empty if parts cannot sleep. Code that moves a sleeping part must wake it.
   std::vector<double> at_rest;
   std::vector<CachedContact> contact_cache;  ///< sorted by `between`
   /// Number of successive steps with a warm start. After a fixed number, the contact solver starts from zero

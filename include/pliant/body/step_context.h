@@ -15,7 +15,7 @@ struct StepContext {
   double t;  ///< time of the coordinates in the state, s: the start of the step, then its end
   double h;  ///< length of the step, s; 0 outside a step
 
-  /// A step that begins at the time of the state and has the step length of the state.
+  /// Makes the context of a step that begins at the time of the state and has the step length of the state.
   StepContext(const Dynamics& of, State& from, Workspace<double>& scratch, StepCounters& counts)
       : StepContext(of, from, scratch, counts, from.time(), from.h) {}
   StepContext(const Dynamics& of, State& from, Workspace<double>& scratch, StepCounters& counts, double time,

@@ -11,15 +11,17 @@ namespace pliant {
 class StepFailure : public std::runtime_error {
  public:
   StepFailure(const std::string& what, double at) : std::runtime_error(what), time(at) {}
-  double time;  ///< of the last good state, s
+  double time;  ///< time of the failure, s: start or end of the step, or a time within the step
 };
 
-/// A step gave a number that is not finite.
+/// A step gave a number that is not finite, or a numerical method failed, for instance because the step is
+/// too long.
 class NumericalFailure : public StepFailure {
   using StepFailure::StepFailure;
 };
 
-/// Joints contradict each other; the message names them and the gap.
+/// Joints contradict each other, cannot close before time 0, or have a prescribed path that jumps. The
+/// message names the joints.
 class UnsatisfiableModel : public StepFailure {
   using StepFailure::StepFailure;
 };

@@ -34,13 +34,14 @@ struct PartWorkspace {
   /// Sum of all generalised forces on v_r, body frame, 6 + n_s; for a part that deforms locally, without
   /// those that LocalDeformation::forces() computes.
   VecX<S> f;
-  Vec<S, kWorks> power;             ///< rates (W) of the works of this part: damping, drag, actuation
+  Vec<S, kWorks> power;             ///< power (W) of the works of this part: damping, drag, actuation
   std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
   SymmetricFactor<S> factor;         ///< L D L^T of M
   const PartModel* rigid = nullptr;  ///< set for a rigid part, whose constant M^-1 replaces `factor`
   VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
-  /// M is increased by this factor times K_s, for contact pushes on stiff parameters; s^2.
+  /// Factor, s^2: M is increased by this factor times K_s while impulses act after an implicit step, see
+  /// method/implicit/stiff_projection_metric.h.
   double stiffening = 0;
   /// For a part without joints: numbers of the dynamic parameters that a limit pushes. For parts in islands:
   /// ConstraintWorkspace::pushed.
@@ -88,7 +89,7 @@ struct Workspace {
   GroupVectors<S, kMaxVelocities> alone;      ///< vectors of the part whose limits are being projected
   std::vector<RigidWorkspace> rigid;          ///< quantities of each rigid island
   VecX<S> v_dot;                              ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
-  Vec<S, kWorks> power;                       ///< stages 3 to 5: rates of the works of the ledger, W
+  Vec<S, kWorks> power;                       ///< stages 3 to 5: power of each kind of work, W
 };
 
 }  // namespace pliant

@@ -26,8 +26,8 @@ namespace assembly {
 inline constexpr double kMaxRotation = 0.5, kMaxChange = 0.3;
 /// The cost of rigid motion: eps, in units of the smallest ratio of stiffness to inertia.
 inline constexpr double kRigidFirst = 1e-6;
-/// The shape has converged if a step changes rotations (rad) and parameters by less than this. A smaller
-/// relative decrease of the merit counts as none.
+/// The shape has converged if the length of a step (rad, see Assembly::step()) is at most kConverged. A
+/// relative decrease of the merit below kConverged counts as no decrease.
 inline constexpr double kConverged = 1e-9;
 /// Merits of closed configurations are equal within this relative difference.
 inline constexpr double kEqualMerit = 1e-12;
@@ -70,7 +70,7 @@ class Assembly {
     eps_ = min_eps_ = kRigidFirst * (stiff_ ? ratio : 1);
   }
 
-  /// Evaluates the joints; returns the largest gap, in lengths of its joint.
+  /// Evaluates the joints. Returns the largest gap of the acting joints, in lengths of the joint.
   double gap() {
     dynamics_.evaluate_joints(state_.time(), state_.q, state_.v, modes_, island_, work_);
     double largest = 0;
@@ -88,8 +88,9 @@ class Assembly {
   /// Returns whether the shape converged within kMaxIterations.
   bool converged() const { return converged_; }
 
-  /// Iterates to closed gaps and a converged shape; returns the number of iterations. Throws
-  /// UnsatisfiableModel if the gaps do not close, and NumericalFailure if a gap is not finite.
+  /// Iterates until the gaps are closed and the shape has converged. Returns the number of iterations; after
+  /// kMaxIterations, converged() is false if only the shape has not converged. Throws UnsatisfiableModel if
+  /// the gaps do not close, and NumericalFailure if a gap is not finite.
   int run() {
     double best_gap = kInfinite, best_merit = kInfinite, last_penalty = penalty_;
     int since_gap = 0, since_merit = 0;
@@ -185,10 +186,10 @@ class Assembly {
     }
   }
 
-  /// Makes one step. Returns its length as a rotation, rad: the largest rotation of a part, or the largest
-  /// change of a parameter (relative for lengths) times kMaxRotation / kMaxChange. If rigid motion cannot
-  /// close the gaps, as in a straight chain that is too short, the cost of rigid motion rises for some steps,
-  /// so that the parameters change more.
+  /// Makes one step. largest: the largest gap, in lengths of its joint. Returns the length of the step, rad:
+  /// the largest rotation of a part, or the largest change of a parameter (relative for lengths) times
+  /// kMaxRotation / kMaxChange. If rigid motion cannot close the gaps, as in a straight chain that is too
+  /// short, the cost of rigid motion rises for some steps, so that the parameters change more.
   double step(double largest) {
     double size = 0;
     for (int attempt = 0;; ++attempt) {
@@ -289,7 +290,8 @@ class Assembly {
     return x;
   }
 
-  /// Returns the smallest change of a one-sided row that the limits and strings allow.
+  /// Returns the smallest change of a one-sided row that the limits and strings allow; -infinity if the row
+  /// has no bound.
   double bound(const Group<double, Eigen::Dynamic>& group, const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_.strings[at(row.k)];
@@ -317,7 +319,7 @@ class Assembly {
     return size;
   }
 
-  /// Moves the parts by a share of a step, and their parameters within their limits.
+  /// Moves the parts by a share of a step, and clamps their parameters to their limits.
   void move(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x, double share) {
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);

@@ -1,5 +1,5 @@
-// Function bodies of joint_switching.h: the impulses when joints begin to act and at kinks of prescribed
-// paths.
+// Function bodies of joint_switching.h: impulses at the times at which joints begin to act, and at kinks of
+// prescribed paths.
 #pragma once
 
 #include <pliant/project/joint_switching.h>
@@ -108,8 +108,8 @@ PLIANT_INLINE void JointSwitching::follow_paths(StepContext& step, double kink, 
   }
 }
 
-/// Records the impulses of an island, except rounding. v_before: the velocities before them. step.work: an
-/// evaluation of the island at step.t.
+/// Records the impulses of an island, except rounding errors. v_before: the velocities before the impulses.
+/// impulses: on the rows of all joints, N s. step.work: an evaluation of the island at step.t.
 PLIANT_INLINE void JointSwitching::record(StepContext& step, const Island& island, bool of_path,
                                           const VecX<double>& v_before, const VecX<double>& impulses) {
   const double t = step.t;

@@ -24,23 +24,25 @@ double just_after(double kink);
 
 class JointSwitching {
  public:
-  /// The dynamics must outlive it.
+  /// The dynamics must outlive this object.
   explicit JointSwitching(const Dynamics& dynamics) : dynamics_(dynamics) {}
 
-  /// Returns t (s), or the time just after a kink of a path if one is within the tolerance (s) of t.
+  /// Returns t (s). If a path has a kink within the tolerance (s) of t, returns the later of t and the time
+  /// just after the kink.
   double after_kink(double t, double tolerance) const;
-  /// Engages and releases the joints that begin or stop acting at step.t, and wakes their islands. Times
-  /// within the tolerance (s) are equal. Does nothing if the state is not finite.
+  /// Engages and releases the joints that begin or stop acting at step.t, and wakes their islands. A
+  /// switching time at most the tolerance (s) after step.t counts as reached. Does nothing if the state is
+  /// not finite.
   void switch_at(StepContext& step, double tolerance);
   /// Engages the joints of the marked islands by engage_joints() (project/project.h): closing joints with a
-  /// small gap become closed, and impulses project the velocities onto the closed joints. Records the
-  /// impulses. islands: one mark for each island of the model.
+  /// small gap become closed if closed joints are projected, and impulses project the velocities onto the
+  /// closed joints. Records the impulses. islands: one mark for each island of the model.
   void engage(StepContext& step, const std::vector<bool>& islands);
   /// Applies the impulses at a kink (s) of prescribed paths and at kinks within the tolerance (s) of it.
   /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed
-  /// joint jumps.
+  /// joint jumps. Does nothing if the state is not finite.
   void follow_paths(StepContext& step, double kink, double tolerance);
-  /// Returns the impulses in the order of time. Impulses that are only rounding are left out.
+  /// Returns the recorded impulses in the order of time. Impulses that are rounding errors are not recorded.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
   /// undo_step() removes the impulses since begin_step(), forget_after() those after a time, s.
   void begin_step() { count_at_begin_ = impulses_.size(); }

@@ -18,8 +18,8 @@ namespace pliant {
 
 namespace projection {
 
-/// The iterations end if one of them leaves more than this share of the gaps: the remaining gaps are
-/// rounding.
+/// The iterations end if an iteration leaves more than this share of the largest gap: the remaining gaps are
+/// rounding errors.
 inline constexpr double kStalledAhead = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxRotationClosing = 0.2;
@@ -54,11 +54,11 @@ inline bool has_closing_joint(const Island& island, const Workspace<double>& wor
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// Limits the rotation of each part of a closing island in the step to kMaxRotationClosing, or to the
-/// rotation with its velocity at the start of the step if that is larger. The force of an open joint can make
-/// a part oscillate about the joint with growing energy. The velocities of the centres of mass do not change.
-/// before: velocities at the start of the step. x: velocities of the group, which are changed. capped:
-/// scratch storage. Returns the work of the change, J.
+/// Limits the rotation, in the step, of each part of an island with a closing joint to kMaxRotationClosing,
+/// or to the rotation with its velocity at the start of the step if that is larger. The force of an open
+/// joint can make a part oscillate about the joint with growing energy. The velocities of the centres of mass
+/// do not change. before: velocities at the start of the step. x: velocities of the group, which are changed.
+/// capped: scratch storage. Returns the work of the change, J.
 template <int Max>
 double limit_rotations(const Group<double, Max>& group, const VecX<double>& before, double h,
                        VecMax<double, Max>& x, VecMax<double, Max>& capped) {
@@ -145,7 +145,8 @@ class PreStep {
       scatter_velocity(group_.model(i), group_.workspace(i), group_.share(vectors_.x, i), state_.v);
   }
 
-  /// One iteration. Returns false if no joint is open and no one-sided row pushes.
+  /// Does one iteration. largest: as for close_gaps(). Returns false if no joint needs a correction and no
+  /// one-sided row is violated.
   bool correct(double& largest) {
     const bool open = island_ != nullptr && close_joints_ahead(largest);
     OneSidedRows<Max> rows(group_);
@@ -164,9 +165,10 @@ class PreStep {
     return true;
   }
 
-  /// Applies impulses at the start of the step that close the joints at its end. The displacement h v is
-  /// projected, not q alone, which conserves the energy of rotating parts (the method SHAKE; Ryckaert,
-  /// Ciccotti & Berendsen 1977). Returns whether joints were open.
+  /// Evaluates the joints at the end of the step, and adds to x the impulses at the start of the step that
+  /// close the joints at its end. The impulses change the displacement h v (the method SHAKE; Ryckaert,
+  /// Ciccotti & Berendsen 1977); projection of q alone would change the energy of rotating parts. largest: as
+  /// for close_gaps(). Returns whether x was changed.
   bool close_joints_ahead(double& largest) {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
@@ -179,9 +181,9 @@ class PreStep {
     return step_.joint_policy().projected && close_gaps(largest);
   }
 
-  /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false if
-  /// these gaps are rounding. largest: on entry the largest gap of the last iteration, on return that of this
-  /// iteration, relative to rounding.
+  /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false,
+  /// without a change, if these gaps are rounding errors or no longer decrease. largest: on entry the largest
+  /// gap of the last iteration, on return that of this iteration, relative to rounding.
   bool close_gaps(double& largest) {
     VecX<double>& error = vectors_.rows;
     error.setZero(island_->rows);
@@ -198,8 +200,8 @@ class PreStep {
     return true;
   }
 
-  /// Returns the smallest velocity of a row that the limits allow: the row is at its limit, or the string at
-  /// its length, at the end of the step.
+  /// Returns the smallest velocity of a row that the limits allow: at this velocity the parameter is at its
+  /// limit, or the string at its length, at the end of the step. Returns -infinity if the row has no bound.
   double min_velocity(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];

@@ -32,12 +32,13 @@ struct PreStepStorage {
   VecX<double> q_end;       ///< coordinates at the end of the step
   Workspace<double> ahead;  ///< evaluation of the joints at q_end
 };
-/// Applies impulses before the coordinates move by h v: at the end of the step every parameter is within its
-/// limits, every string within its length and every closed joint closed. step.work: the evaluation at the
+/// Applies impulses before the coordinates move by h v. With these impulses, at the end of the step every
+/// parameter is within its limits, every string is at most as long as its length, and every closed joint is
+/// closed if closed joints are projected. Sleeping islands are skipped. step.work: the evaluation at the
 /// start of the step. v_start: the velocities at the start of the step.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
-/// Sets parameters that are at a limit according to State::at_limit exactly to the value of this limit.
+/// Sets each parameter that is at a limit by State::at_limit exactly to the value of this limit.
 void clamp_to_limits(const Model& model, State& state);
 
 /// Ends the motion of a step at step.t: velocities without inertia are set to zero, quaternions are
@@ -50,9 +51,9 @@ void project_frames(StepContext& step);
 /// Projects the frames of the parts with these numbers.
 void project_frames(StepContext& step, const std::vector<int>& parts);
 
-/// Projects parameters that have passed a limit in the step that ends at step.t back to the limit, in the
-/// mass metric, and stops them by impulses. For parts without joints. Does nothing if the state is not
-/// finite.
+/// For parts without joints: projects parameters that have passed a limit in the step that ends at step.t
+/// onto this limit, in the mass metric, and stops these parameters by impulses. Does nothing if the state is
+/// not finite.
 void project_limits(StepContext& step);
 
 /// Projects all islands at step.t, with the limits and strings of their parts: open joints with a small gap

@@ -26,13 +26,13 @@ inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
 /// K is regular if |sum m d s^T| over the nodes is at most this share of the smallest moment of inertia.
 inline constexpr double kSmallChange = 0.3;
-/// Largest condition number of K (for modes, of S), after scaling by the factors that scale the diagonal of
-/// H0 to 1.
+/// Largest LocalWorkspace::condition(), the condition number of the matrix that determines the frame.
 inline constexpr double kMaxCondition = 1e8;
 
 /// Returns whether the conditions of a part without dynamic parameters are satisfied to rounding, now and
-/// after another step with these rates. Most methods satisfy them after a step, because W is constant and the
-/// conditions are linear.
+/// after another step with the present rates. Returns false for a part with dynamic parameters. Without
+/// dynamic parameters W is constant and the conditions are linear, so that most methods satisfy them after a
+/// step.
 inline bool conditions_met(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
   if (m.n_s > 0 || !(state.h > 0) || !work.local || work.local->H0.rows() == 0 ||
       !(work.local->condition() <= kMaxCondition))
@@ -81,7 +81,8 @@ inline void check_condition(const PartModel& m, const LocalWorkspace& local, dou
   throw NumericalFailure(message.str(), step.t);
 }
 
-/// Projects the frame of part i.
+/// Projects the frame of part i. Does nothing if the part does not deform locally, if its q_d and their rates
+/// are zero, or if the state is not finite.
 inline void project_frame(StepContext& step, std::size_t i) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;

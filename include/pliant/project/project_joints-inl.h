@@ -55,7 +55,7 @@ class Snapshot {
 };
 
 /// For a part that deforms locally: adds to its velocities the rigid motion that restores its momentum P and
-/// its angular momentum L. from, to: its evaluations before and after the projection.
+/// its angular momentum L. from, to: the evaluations of the part before and after the projection.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
   const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
@@ -100,9 +100,9 @@ inline const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& gro
   return group.island()->parts;
 }
 
-/// Projects a group onto its joints and limits. closed: whether joints have just closed. step.work: evaluated
-/// for the group. scratch: scratch storage; its contents are ignored. impulses: if given, the impulses that
-/// close joints are added to it, N s.
+/// Projects a group onto its joints and limits. closed: whether joints of the group have just become closed.
+/// step.work: an evaluation of the group. scratch: scratch storage; its contents are ignored. impulses: if
+/// given, the impulses that close joints are added to it, N s.
 template <int Max>
 void project_group(StepContext& step, const Group<double, Max>& group, bool closed,
                    Workspace<double>& scratch, VecX<double>* impulses = nullptr) {
@@ -227,7 +227,7 @@ inline void close_strings(const Model& model, const Island& island, const Worksp
 }
 
 /// Sets the modes of strings: closed if the string is taut, otherwise slack. A string is taut if the distance
-/// of its ends is at least its length, within kTaut, and they do not approach each other.
+/// of its ends is at least its length, within kTaut, and the ends do not approach each other.
 inline void update_string_modes(const Model& model, const Island& island, const Workspace<double>& work,
                                 State& state) {
   const double rate = model.body().stabilization.rate;
@@ -241,8 +241,8 @@ inline void update_string_modes(const Model& model, const Island& island, const 
   }
 }
 
-/// Projects an island of rigid parts on ball joints whose last evaluation used RigidIsland. Returns false if
-/// the island needs the general projection.
+/// Projects an island of rigid parts on ball joints. Returns false if the island needs the general
+/// projection: if its last evaluation did not use RigidIsland, or RigidIsland::close() failed.
 inline bool project_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
                                  State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);

@@ -53,7 +53,7 @@ inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   return kResidual * joint.length + kRounding * size;
 }
 
-/// Returns the rounding of the gaps of rigid islands.
+/// Returns the allowed gaps of rigid islands.
 inline RigidIsland::Rounding rounding(const Model& model) {
   return {kResidual, kRounding, model.body().stabilization.rate};
 }
@@ -89,7 +89,7 @@ void gather_velocities(const Group<double, Max>& group, const VecX<double>& v, V
     gather_velocity(group.model(i), group.workspace(i), v, group.share(x, i));
 }
 
-/// Returns the change of the kinetic energy of a group from velocities x to y.
+/// Returns the change of the kinetic energy of a group from velocities x to y, J.
 template <int Max>
 double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>& x,
                       const VecMax<double, Max>& y) {
@@ -108,8 +108,8 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
   return sum;
 }
 
-/// for_each_alone() calls act(group) for every part with parameters and without joints, for_each_island() for
-/// every island.
+/// for_each_alone() calls act(group) for every part with dynamic parameters and without joints.
+/// for_each_island() calls act(group) for every island.
 template <class F>
 void for_each_alone(const Model& model, Workspace<double>& work, F&& act) {
   for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
@@ -216,7 +216,7 @@ class Projection {
       const PartModel& m = group_.model(i);
       for (int k = 0; k < m.n_s; ++k)
         if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0)
-          limit_mode(state_, m, k) = 0;  // it leaves the limit
+          limit_mode(state_, m, k) = 0;  // the parameter leaves the limit
     }
     return impulses;
   }
@@ -309,7 +309,7 @@ class Projection {
     return correction > kMaxUndoneShare * kMaxUndoneShare * state_.h * state_.h * motion;
   }
 
-  /// Returns the rounding of a row of a joint.
+  /// Returns the rounding of the rows of a joint, m for coordinates and m/s for velocities.
   double row_rounding(const JointModel& joint, Rows kind) const {
     if (kind == Rows::coordinates) return rounding(joint, work_);
     double size = 0;
@@ -444,7 +444,7 @@ class Projection {
 
   static constexpr double kUnbounded = -std::numeric_limits<double>::infinity();
 
-  /// Returns the smallest change of a row that limits and strings allow.
+  /// Returns the smallest change of a row that limits and strings allow; kUnbounded if there is no bound.
   double min_change(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -464,7 +464,7 @@ class Projection {
     return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
   }
 
-  /// Returns the smallest velocity of a row that limits and strings allow.
+  /// Returns the smallest velocity of a row that limits and strings allow; kUnbounded if there is no bound.
   double min_velocity(const OneSidedRow& row, const Vector& v) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -493,7 +493,7 @@ class Projection {
   RankRule rank_ = RankRule::keep;
   double initial_gap_ =
       0;  ///< largest gap of the closed joints before the projection, in lengths of the joint
-  int widest_joint_ = -1;            ///< the joint with that gap
+  int widest_joint_ = -1;            ///< number of the joint with the largest gap
   bool evaluated_ = false;           ///< whether the joints were evaluated at the current state
   bool linear_update_ = false;       ///< whether C_dot follows from an evaluation at earlier velocities
   bool new_factor_ = false;          ///< whether this iteration computed the factor

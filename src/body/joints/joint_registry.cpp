@@ -18,7 +18,8 @@ Eigen::Quaterniond orientation(const Point& point) {
   return point.part == nullptr ? Eigen::Quaterniond::Identity() : point.part->R0();
 }
 
-/// Returns the size of the smallest part with coordinates at a joint, m.
+/// Returns the size of the smallest part with coordinates at a joint, m. Throws std::invalid_argument if
+/// there is none.
 double smaller_size(const JointSetting& s) {
   double size = std::numeric_limits<double>::infinity();
   for (const Point* point : {&s.from, &s.to})
@@ -43,7 +44,7 @@ std::pair<Mat3<double>, Mat3<double>> axes_of(JointKeys keys, const JointSetting
   return {turn.toRotationMatrix().transpose() * to, to};
 }
 
-/// Makes a joint of formula F.
+/// Makes a joint of formula F. Throws std::invalid_argument for an invalid setting.
 template <class F>
 std::unique_ptr<Joint> make(std::string name, const JointSetting& s) {
   for (const Point* point : {&s.from, &s.to})

@@ -1,4 +1,4 @@
-// The times at which the prescribed rates of the ends of joints jump.
+// The times at which the prescribed position of an end of a joint, or the rate of this position, jumps.
 #include <algorithm>
 #include <limits>
 
@@ -7,8 +7,8 @@
 namespace pliant {
 
 namespace {
-/// A kink at most this number of units in the last place before the time at which a joint switches on counts
-/// as a kink at that time.
+/// A joint switches on at the time `on`. A kink before `on` counts as a kink at `on` if it is earlier by less
+/// than kUlps times the machine epsilon times |on|.
 constexpr double kUlps = 8;
 }  // namespace
 

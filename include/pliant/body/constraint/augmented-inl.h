@@ -87,7 +87,7 @@ PLIANT_INLINE void AugmentedFactor::factor(const std::vector<PartWorkspace<doubl
     }
   }
   for (const double d_row : d) *value++ = -d_row;
-  factored_ = factor_->factor(K_);  // if the factorisation fails, solutions are NaN
+  factored_ = factor_->factor(K_);  // if the factorisation fails, solve() returns NaN
 }
 
 PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
@@ -115,9 +115,9 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
     stalled = now > detail::kStalledRatio * before ? stalled + 1 : 0;
     if (stalled > 0 && now <= detail::kRoundingResidual * size) break;
     if (stalled == detail::kMaxStalledRefinements) {
-      // The residual is on rows that depend on others but contradict them, for instance while joints are a
-      // little open within a step. Each refinement has added about the same increment to the forces of these
-      // rows: remove all i + 1 increments.
+      // The residual is on rows that depend on other rows and contradict them, for instance while joints are
+      // slightly open within a step. Each refinement has added about the same increment to the forces of
+      // these rows: remove all i + 1 increments.
       z -= (i + 1) * more;
       break;
     }

@@ -1,9 +1,9 @@
 // The augmented matrix of Eq. (14) for the joints of an island,
 //   [ M    C_q^T ]
 //   [ C_q   -d   ]      d: diagonal, small and positive
-// It is sparse. The entries of d make the matrix quasi-definite, so that it can be factored although rows of
-// C_q depend on each other. Iterative refinement removes the error that d causes in all independent rows. The
-// factor solves systems with W_c = C_q M^-1 C_q^T without forming W_c.
+// The matrix is sparse. The entries of d make the matrix quasi-definite, so that it can be factored even if
+// rows of C_q depend on each other. Iterative refinement removes the error that d causes in all independent
+// rows. The factor solves systems with W_c = C_q M^-1 C_q^T without forming W_c.
 #pragma once
 
 #include <memory>
@@ -42,9 +42,9 @@ class AugmentedFactor {
 
 /// Largest number of rows of an island for dependent_rows().
 inline constexpr int kMaxRankRows = 900;
-/// Returns which rows of C_q of an island depend linearly on others, by a sparse QR factorisation. Messages
-/// use the result; a step does not call this function. For an island of more than kMaxRankRows rows, all
-/// entries are false.
+/// Returns for each row of C_q of an island whether the row depends linearly on other rows, by a sparse QR
+/// factorisation. The result is for messages; a step does not call this function. For an island of more than
+/// kMaxRankRows rows, all entries are false.
 std::vector<bool> dependent_rows(const Model& model, const Island& island,
                                  const ConstraintWorkspace<double>& work);
 

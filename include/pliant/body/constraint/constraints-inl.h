@@ -72,8 +72,8 @@ PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<
   return motion;
 }
 
-/// Adds (C_x L)^T of a port to C_q^T of its side, with L = R [I, -[p]x, J, S] of Eq. (9). C_x: rows x 3, by
-/// columns.
+/// Adds (C_x L)^T of a port to C_q^T of its side, with L = R [I, -[p]x, J] of Eq. (9). For a part that
+/// deforms locally, L also has the block R for d_dot of the port. C_x: rows x 3, by columns.
 template <class S>
 void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, int rows, const S* C_x,
                     S* Cq) {
@@ -179,8 +179,8 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls EvaluatePart for the parts of an island in their order, each at the latest before the first joint
-/// that needs it.
+/// Calls place(i) for the parts i of an island in their order, each part before the first joint on it. Does
+/// nothing if `place` is empty.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const EvaluatePart& place) : island_(island), place_(place) {
@@ -218,7 +218,7 @@ void evaluate_joints(const Model& model, const Island& island, double t,
 
 namespace detail {
 
-/// Computes the factors of an island. Calls act(j) first for each of its joints.
+/// Computes M^-1 C_q^T and the factors of an island. Calls act(j) for each joint j before its C_q^T is read.
 template <class S, class F>
 void factor_after(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                   ConstraintWorkspace<S>& work, F&& act) {
@@ -379,7 +379,7 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!acts(joints.modes[j])) continue;
     const auto lambda = joints.lambda.segment(joint.row, joint.rows);
     const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
-    // For a joint that projection keeps closed, lambda . C_dot is an error of the method and not a work.
+    // If projection keeps a joint closed, lambda . C_dot is an error of the method, not the power of a work.
     if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
       power[static_cast<int>(Work::baumgarte)] += closing;
     if (!joint.driven) continue;

@@ -30,8 +30,8 @@ struct OneSidedRow {
   /// string from becoming slack.
   double sign;
   double bound;
-  /// Compliance of the row: it may miss its bound by this fraction of the change that its own push causes.
-  /// Rows that contradict each other have a solution then.
+  /// Compliance of the row: the row may miss its bound by this fraction of the change that its own push
+  /// causes. With softness, rows that contradict each other have a solution.
   double softness = 0;
 };
 
@@ -54,7 +54,7 @@ class JointFactor {
   /// residual.
   void solve(VecX<S>& x) const;
   bool exact() const { return values_ == nullptr; }
-  /// Returns which rows depend linearly on others.
+  /// Returns for each row whether the row depends linearly on other rows.
   std::vector<bool> dependent(const Model& model, const Island& island,
                               const ConstraintWorkspace<S>& work) const;
   /// Returns whether solutions need iterative refinement.
@@ -104,12 +104,12 @@ struct ConstraintWorkspace {
   std::vector<GroupVectors<S, Eigen::Dynamic>> vectors;  ///< of each island
 };
 
-/// A function that evaluates a part (by its number) as far as its joints need it.
+/// A function that evaluates the part with a given number, as far as the joints on the part need it.
 using EvaluatePart = std::function<void(int)>;
 
 /// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls place(i), if given, for
-/// the parts of the island in turn, each at the latest before the first of its joints is evaluated, while
-/// both are in the cache.
+/// the parts of the island in turn, each part before the first joint on it is evaluated. Part and joint are
+/// then in the cache together.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
@@ -138,11 +138,12 @@ double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, 
 /// work.joints.pushed which of them push.
 void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
                   Workspace<double>& work);
-/// Solves for the derivative of lambda; the rows of work.joints.pushed push.
+/// Solves for the derivatives of lambda and of the accelerations, with pushes on the rows of
+/// work.joints.pushed.
 void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work);
 
-/// Returns bias + 2 alpha C_dot + beta^2 C of joint j: the accelerations a have to satisfy C_q a = -wanted.
-/// In terms of the paper it is -(gamma - 2 alpha C_dot - beta^2 C).
+/// Returns bias + 2 alpha C_dot + beta^2 C of joint j, which is -(gamma - 2 alpha C_dot - beta^2 C) in the
+/// terms of the paper. The accelerations a have to satisfy C_q a = -wanted.
 template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
 /// Returns |C_q a + wanted| of joint j for the accelerations a of an evaluation, m/s^2; for a one-sided joint
@@ -150,7 +151,7 @@ VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>
 /// that contradict them, or the forces of closing joints are limited (kMaxClosingRatio, solve_joints-inl.h).
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
-/// Returns the power of each kind of work (enum Work) that joints do, W.
+/// Returns the power of the joints for each kind of work (enum Work), W.
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 

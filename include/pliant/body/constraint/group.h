@@ -1,7 +1,7 @@
 // A group: one part without joints, or the parts of an island. The velocities v_r = (R^T c_dot, omega,
-// q_s_dot) of its parts, one after the other, form one vector x. The entries of a part that deforms locally
-// continue with d_dot of the points at its joints. Joints and one-sided rows (limits of parameters, strings)
-// act on x.
+// q_s_dot) of its parts, one after the other, form one vector x. For a part that deforms locally, d_dot of
+// the points at its joints follows its v_r. Joints and one-sided rows (limits of parameters, strings) act on
+// x.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ class Group {
   const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
   const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
   const Island* island() const { return island_; }
-  /// Number of the island of the group.
+  /// Number of the island of the group; only for the group of an island.
   std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
   /// Sets x from velocities_of(i), the velocities of each part i in the group.
@@ -55,7 +55,7 @@ class Group {
   auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
   auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
 
-  /// Returns the value that a row bounds from below.
+  /// Returns the value that a one-sided row bounds from below, see OneSidedRow.
   S value(const OneSidedRow& row, const Vector& x) const;
   /// Returns the change of x that a unit force (or impulse) on a row causes if the joints exert no forces.
   Vector push(const OneSidedRow& row) const;
@@ -77,10 +77,10 @@ class Group {
   }
   /// Returns whether a result of correct() needs iterative refinement.
   bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
-  /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with
-  /// W_c lambda = -rows. Returns lambda, which the next call overwrites. W_c may be that of an earlier
-  /// configuration; lambda is approximate then, but the forces act along the present C_q^T, so that the two
-  /// ends of a joint get opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
+  /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with W_c
+  /// lambda = -rows. Returns lambda, which the next call overwrites. W_c may be the matrix of an earlier
+  /// configuration. Then lambda is approximate, but the forces act along the present C_q^T, so that the two
+  /// ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
   /// the factorisation.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const;
 

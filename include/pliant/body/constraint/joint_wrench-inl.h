@@ -1,4 +1,4 @@
-// The action of a joint on the part of its first side: the sum of the forces C_x^T lambda at its points.
+// The action of a joint on its first side: the sum of the forces C_x^T lambda at the points of this side.
 #pragma once
 
 #include <array>

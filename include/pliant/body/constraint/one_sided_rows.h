@@ -1,5 +1,6 @@
-// One-sided rows of a group and the pushes that satisfy them: the least change of x in the mass metric. Each
-// push lambda is >= 0, and zero unless its row is at its bound. The joints of the group act meanwhile.
+// One-sided rows of a group and the pushes (forces or impulses) that satisfy these rows: the least change of
+// x (group.h) in the mass metric. Each push lambda is >= 0, and zero unless its row is at its bound. The
+// response to a push includes the reactions of the joints of the group.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ class OneSidedRows {
     rows_[n_] = row;
     responses_[n_++] = group_.response(row);
   }
-  /// Adds all rows of the group that x violates and that were not added before. Returns whether it added any.
-  /// bound(row): the bound of a row.
+  /// Adds all rows of the group that x violates and that were not added before, except rows of parameters
+  /// without inertia. Returns whether a row was added. bound(row): the bound of a row.
   template <class Bound>
   bool add_violated(const Vector& x, Bound&& bound) {
     const std::size_t before = n_;
@@ -77,8 +78,8 @@ class OneSidedRows {
     }
     return after;
   }
-  /// Changes x so that it satisfies all rows of the group with bound(row), including rows that the pushes of
-  /// others would violate.
+  /// Changes x so that x satisfies all rows of the group with the bounds bound(row), including rows that the
+  /// pushes on other rows would violate.
   template <class Bound>
   void satisfy_all(Vector& x, Bound&& bound) {
     if (!add_violated(x, bound)) return;

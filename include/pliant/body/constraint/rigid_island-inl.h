@@ -24,8 +24,8 @@ namespace detail {
 /// pairs of joints are computed, for four parts at once.
 inline constexpr int kMaxArms = 16;
 
-/// Whether a joint is a ball joint without prescribed motion between two different parts, or between a part
-/// and the world.
+/// Returns whether a joint is a ball joint without prescribed motion between two different parts, or between
+/// a part and the world.
 inline bool is_undriven_ball(const JointModel& m) {
   if (dynamic_cast<const JointOf<Ball>*>(m.joint) == nullptr || m.driven) return false;
   return m.at[0].part != m.at[1].part;

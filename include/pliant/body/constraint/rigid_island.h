@@ -1,11 +1,13 @@
-// Rigid islands: rigid parts on ball joints. A method of integration needs only their accelerations, which
-// this file computes for four parts at a time, without the frames, points and rows of the general evaluation.
+// Rigid islands: rigid parts on ball joints. A method of integration needs only the accelerations of these
+// parts. This file computes them for four parts at a time, without the frames, points and rows of the general
+// evaluation.
 //
 // Let r be the vector from the centre of mass to the point of a joint, and let I^-1 = L L^T be the inverse
 // inertia about the centre of mass, body frame. A force f at point j of a part accelerates point i of the
 // part by
-//   (1/m + B_i B_j^T) f,   B = R [r]x L.
-// These 3 x 3 blocks make W_c = C_q M^-1 C_q^T of Eq. (14); neither C_q nor M is formed.
+//   (1/m + B_i B_j^T) f,   B = R [r]x L,
+// where m is the mass of the part, and 1/m stands for 1/m times the identity. The blocks of W_c = C_q M^-1
+// C_q^T of Eq. (14) are sums of these 3 x 3 matrices with signs; neither C_q nor M is formed.
 #pragma once
 
 #include <array>
@@ -55,10 +57,10 @@ struct RigidWorkspace {
 
 class RigidIsland {
  public:
-  /// Whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in all six
-  /// velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its joints must
-  /// be ball joints between two parts, or between a part and a fixed point. The joint system must be solved
-  /// by blocks.
+  /// Returns whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in
+  /// all six velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its
+  /// joints must be ball joints between two parts, or between a part and a fixed point. The joint system must
+  /// be solved by the blocks of W_c, not by the augmented matrix.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
@@ -67,8 +69,9 @@ class RigidIsland {
   int island() const { return island_; }
 
   /// Computes v_dot of the parts at (q, v) with all joints closed, and the factor of W_c, as
-  /// Dynamics::accelerations() does. work.joints.rank is the rule of the factor. For a part with loads,
-  /// work.parts[i].f must contain the generalised forces of the loads on v_r.
+  /// Dynamics::accelerations() does. gravity: m/s^2, world. work.joints.rank: the rule for dependent rows of
+  /// the factor. For a part with loads, work.parts[i].f must contain the generalised forces of the loads on
+  /// v_r.
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
@@ -87,8 +90,8 @@ class RigidIsland {
 
   /// Adds impulses to v that close the joints at the end of a step of length h (s). The impulses act at the
   /// configuration of the last evaluation and are found with its factor. q_end() returns the coordinates at
-  /// the end for the present v. Returns false, with v unchanged, if the iteration converges slowly or is
-  /// not finite.
+  /// the end of the step for the present v. Returns false, with v unchanged, if the iteration converges
+  /// slowly or is not finite.
   bool close_ahead(const Rounding& allowed, double h, const BlockFactor<double>& W_c, RigidWorkspace& now,
                    VecX<double>& v, const std::function<const VecX<double>&()>& q_end) const;
 
@@ -142,7 +145,7 @@ class RigidIsland {
   /// Computes frames, free accelerations, arms and mobilities of four parts.
   void place(const Four& constants, const VecX<double>& q, const VecX<double>& v, const Vec3<Pack>& gravity,
              RigidWorkspace& now, RigidWorkspace::Four& four) const;
-  /// Adds the accelerations by loads.
+  /// Adds the accelerations that loads cause.
   void add_loads(const Workspace<double>& work, RigidWorkspace& now) const;
   /// Computes the mobilities of four parts from their arms.
   static void couple(const Four& constants, RigidWorkspace& now);

@@ -21,12 +21,12 @@ namespace detail {
 /// accelerate their parts without bound. The accelerations are limited to this multiple of those that
 /// Baumgarte's terms require.
 inline constexpr double kMaxClosingRatio = 30;
-/// Softness of the rows of closing strings if the accelerations exceed that limit. The strings then share the
-/// load.
+/// Softness (OneSidedRow) of the rows of closing strings if the accelerations exceed this limit. The strings
+/// then share the load.
 inline constexpr double kClosingSoftness = 1e-3;
 
-/// The joints of an island and the accelerations x of its parts. At first x are the accelerations without
-/// joints.
+/// The forces of the joints of an island and the accelerations x of its parts. `before` contains the
+/// accelerations without joints.
 template <class S>
 class IslandForces {
  public:
@@ -85,8 +85,8 @@ class IslandForces {
  private:
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
-  /// Changes x so that C_q x = -wanted for the acting joints with which(j), and adds the forces to lambda:
-  /// Eq. (14) after elimination of M.
+  /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the
+  /// forces to lambda: Eq. (14) after elimination of M.
   template <class Which>
   void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
     const int refinements = group.is_rough() ? 2 : 0;
@@ -156,9 +156,9 @@ class IslandForces {
   Vectors& kept_;
 };
 
-/// Softens the rows of closing strings if the push on one of them changes its row by more than
-/// kMaxClosingRatio times the largest violation at x, the accelerations without pushes. Returns whether it
-/// softened them.
+/// Softens the rows of closing strings if the push on one of these rows changes the row by more than
+/// kMaxClosingRatio times the largest violation at x, the accelerations without pushes. Returns whether the
+/// rows were softened.
 inline bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
                            const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
                            OneSidedRows<Eigen::Dynamic>& rows) {
@@ -186,8 +186,8 @@ inline void add_strings(const Model& model, const Island& island, const Constrai
   }
 }
 
-/// Returns the pushes lambda on the rows `pushed`, from their small dense system, which is factored as blocks
-/// of one row.
+/// Returns the pushes lambda on the rows `pushed`, with their derivatives, from the small dense system of
+/// these rows.
 inline VecX<Dual<1>> solve_pushes(const Model& model, const Island& island,
                                   const IslandForces<Dual<1>>& forces,
                                   const ConstraintWorkspace<Dual<1>>& joints,

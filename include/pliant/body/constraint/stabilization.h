@@ -32,7 +32,7 @@ struct Stabilization {
   /// Largest speed at which the gap of a closing joint closes, in units of `rate` times the size of the
   /// smaller part.
   double speed = 3;
-  /// Whether open joints are assembled before time 0 (project/assemble.h), not during the run.
+  /// Whether open joints are closed before time 0 (project/assemble.h), not during the run.
   bool assemble_first = false;
   /// Whether closed joints are projected after each step; the default is true.
   std::optional<bool> projection;
@@ -48,12 +48,12 @@ struct Stabilization {
     if (rule == BaumgarteRule::free && stab_beta == 0)
       throw std::invalid_argument("stabilization: the rule free needs stab_beta > 0, or no gap closes");
   }
-  /// Whether the gains depend on the step length, so that they are stable for any step. consistent: whether
-  /// the rule `automatic` means `step_consistent`.
+  /// Returns whether the gains depend on the step length. consistent: whether the rule `automatic` means
+  /// `step_consistent`.
   bool follows_step(bool consistent) const {
     return rule == BaumgarteRule::step_consistent || (rule == BaumgarteRule::automatic && consistent);
   }
-  /// Returns the gains for a step of length h (s).
+  /// Returns the gains for a step of length h (s). consistent: as for follows_step().
   Gains gains(double h, bool consistent) const {
     if (rule == BaumgarteRule::free) return {stab_alpha, stab_beta};
     // The gains of the rule critical are also the limit of those of step_consistent for h -> 0.

@@ -1,6 +1,6 @@
 // The point-to-point joint of the paper: two points coincide,
 //   C = x_0 - x_1.
-// With a moving point of the world it is a moving anchor or a prescribed path.
+// With a moving point of the world, the other point follows a prescribed path.
 #pragma once
 
 #include <array>

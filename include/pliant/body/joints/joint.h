@@ -1,9 +1,10 @@
 // A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it connects. The formula of a joint
-// is one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
+// is one struct (body/joints/*.h), templated on its scalar. All other quantities are derived from the
+// formula:
 //   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
-// bias is C_ddot for constant generalised velocities: the second derivative of C along a motion of the points
-// with velocity x_dot and acceleration L_dot v. Prescribed points follow their paths. bias contains C_tt and
-// C_qt.
+// Here L is the matrix of Eq. (9), x_dot = L v. bias is C_ddot for constant generalised velocities v: the
+// second derivative of C along a motion of the points with velocity x_dot and acceleration L_dot v. Points
+// with a prescribed motion follow this motion. bias contains the terms with C_tt and C_qt of Eq. (13).
 #pragma once
 
 #include <array>
@@ -63,7 +64,7 @@ class Joint {
   bool acts_at(double t) const { return t >= on_ && t < off_; }
   virtual const char* type() const = 0;
   virtual int rows() const = 0;
-  /// Whether the constraint is C >= 0 with a multiplier >= 0, instead of C = 0.
+  /// Returns whether the constraint is C >= 0 with a multiplier lambda >= 0, instead of C = 0.
   virtual bool one_sided() const = 0;
 
   /// The points of the first side, then the points of the second side. All points of a side are on one part,
@@ -106,7 +107,8 @@ struct IsFramed : std::false_type {};
 template <class F>
 struct IsFramed<F, std::void_t<decltype(F::framed)>> : std::bool_constant<F::framed> {};
 
-/// Whether a formula has a function fault(), which returns a message for invalid numbers, else nullptr.
+/// Whether a formula has a function fault(). fault() returns a message if a number of the formula is invalid,
+/// else nullptr.
 template <class F, class = void>
 struct HasFault : std::false_type {};
 template <class F>
@@ -114,7 +116,7 @@ struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : st
 
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
 /// rows; `first` and `second`, the numbers of points of its sides (second = 0 for a joint to the world
-/// whose formula needs no second point); and `one_sided`. Its formula is
+/// whose formula needs no second point); and `one_sided`. The function of the formula is
 /// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;

@@ -15,8 +15,8 @@ struct JointInfo {
   const char* formula;
   int rows;
   JointKeys keys;  ///< members of JointSetting that the joint uses
-  /// Makes a joint. Parts of the setting must be prepared. Throws std::invalid_argument for an invalid
-  /// setting.
+  /// Makes a joint. The parts of the setting must be prepared (Part::prepare()). Throws std::invalid_argument
+  /// for an invalid setting.
   std::unique_ptr<Joint> (*make)(std::string name, const JointSetting& setting);
 };
 

@@ -1,4 +1,4 @@
-// A massless rod: the distance of two points is its length l > 0.
+// A massless rod of length l > 0: the distance of two points is l.
 //   C = |x_0 - x_1| - l
 // While the two points coincide, the rod has no direction and no force.
 #pragma once

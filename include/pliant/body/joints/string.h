@@ -1,4 +1,4 @@
-// An inextensible string: the distance of two points is at most its length l > 0.
+// An inextensible string of length l > 0: the distance of two points is at most l.
 //   C = l - |x_0 - x_1| >= 0
 // A taut string pulls; a slack string has no force.
 #pragma once

@@ -18,8 +18,8 @@ namespace pliant::detail {
 
 // Before the stages: sizes, and which parts and islands each stage evaluates.
 
-/// Marks the rigid islands that this evaluation uses: awake ones whose joints are all closed and projected,
-/// if only rates are requested.
+/// Marks the rigid islands that this evaluation uses. If only rates are requested, these are the awake rigid
+/// islands whose joints are all closed and projected; otherwise there are none.
 template <class S>
 void choose_rigid_islands(const Evaluation<S>& e) {
   const auto& rigid_islands = e.model().rigid_islands();
@@ -35,9 +35,9 @@ void choose_rigid_islands(const Evaluation<S>& e) {
 }
 
 /// Lists the parts that are evaluated before any joint: parts without joints, and all parts of islands that
-/// are not evaluated with their joints. Of a rigid island whose constants are known, only the parts with
-/// loads are listed. Sleeping parts are left out, unless loads act on them or on their island: the loads need
-/// their positions.
+/// are not evaluated with their joints. If a rigid island is used and its constants are known, only its
+/// parts with loads are listed. If only rates are requested, sleeping parts are left out, unless loads act on
+/// them or on their island: the loads need their positions.
 template <class S>
 void list_parts_before_joints(const Evaluation<S>& e) {
   const Model& model = e.model();
@@ -61,7 +61,7 @@ void list_parts_before_joints(const Evaluation<S>& e) {
   }
 }
 
-/// Gives the workspace its sizes, and decides which parts and islands each stage evaluates.
+/// Resizes the workspace, and decides which parts and islands each stage evaluates.
 template <class S>
 void start_evaluation(const Evaluation<S>& e) {
   const std::size_t n_parts = e.model().parts().size();
@@ -89,8 +89,9 @@ inline void prepare_rigid_part(const Evaluation<double>& e, int i) {
   w.f.setZero(6);
 }
 
-/// Stages 1 to 3 of part i, and stage 5 if no load acts on it. All are done at once, while the part is in the
-/// cache. Throws InvertedElement, naming the part.
+/// Stages 1 to 3 of part i, and stage 5 if no load acts on it, one after the other while the part is in the
+/// cache. A part without coordinates has stage 1 only. Throws InvertedElement, with the name of the part, if
+/// an element of the part is inverted.
 template <class S>
 void evaluate_part(const Evaluation<S>& e, int i) {
   const PartModel& m = e.part(i);
@@ -136,7 +137,7 @@ void evaluate_loads(const Evaluation<S>& e) {
 
 // Stage 4: joints.
 
-/// Gives the workspace of the joints its sizes.
+/// Resizes the workspace of the joints.
 template <class S>
 void size_joint_workspace(const Model& model, Workspace<S>& work) {
   ConstraintWorkspace<S>& joints = work.joints;
@@ -152,7 +153,7 @@ void size_joint_workspace(const Model& model, Workspace<S>& work) {
   joints.vectors.resize(model.islands().size());
 }
 
-/// Sets modes and Baumgarte gains of the joints from the state. Joints of skipped islands are off.
+/// Sets modes and Baumgarte's gains of the joints from the state. Joints of skipped islands get the mode off.
 template <class S>
 void set_joint_modes(const Evaluation<S>& e) {
   ConstraintWorkspace<S>& joints = e.work.joints;
@@ -210,7 +211,7 @@ inline std::vector<OneSidedRow> limits_at_rest(const Evaluation<double>& e, cons
 }
 
 /// Stage 4 of an island: C, C_dot, bias and C_q, then M^-1 C_q^T and W_c, then lambda and the accelerations
-/// of its parts. place(i): evaluates part i, if the parts are evaluated together with their joints.
+/// of its parts. place(i): evaluates part i; used if the parts are evaluated together with their joints.
 template <class S>
 void evaluate_island(const Evaluation<S>& e, const Island& island, const EvaluatePart& place) {
   if (e.uses_rigid(island) || e.skips(island)) return;
@@ -246,7 +247,8 @@ void evaluate_rigid_islands(const Evaluation<S>& e) {
 
 // Stage 5: accelerations.
 
-/// Stage 5 of part i: its entries of v_dot, and its powers. A sleeping part has no acceleration.
+/// Stage 5 of part i: sets its entries of v_dot, and adds its powers to work.power. A sleeping part has zero
+/// acceleration and no power.
 template <class S>
 void collect_part(const Evaluation<S>& e, int i) {
   const PartModel& m = e.part(i);

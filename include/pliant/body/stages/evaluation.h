@@ -29,17 +29,19 @@ struct Evaluation {
   const PartModel& part(int i) const { return model().parts()[static_cast<std::size_t>(i)]; }
   PartWorkspace<S>& part_work(int i) const { return work.parts[static_cast<std::size_t>(i)]; }
 
-  /// Whether part i sleeps, and the stages leave it out.
+  /// Returns whether the stages leave out part i because it sleeps. Always false unless only rates are
+  /// requested.
   bool skips(int i) const { return rates_only && modes != nullptr && sleeps(*modes, i); }
-  /// Whether an island sleeps, and the stages leave it out. All parts of an island sleep together.
+  /// Returns whether the stages leave out an island because it sleeps. All parts of an island sleep together.
   bool skips(const Island& island) const { return skips(island.parts.front()); }
-  /// Whether an island is evaluated as a rigid island (constraint/rigid_island.h).
+  /// Returns whether an island is evaluated as a rigid island (constraint/rigid_island.h).
   bool uses_rigid(const Island& island) const { return uses_rigid(island.rigid); }
-  /// Whether a part is evaluated with its rigid island; the general stages evaluate only its loads then.
+  /// Returns whether a part is evaluated with its rigid island. Then the general stages evaluate only its
+  /// positions for loads, and the loads.
   bool uses_rigid(const PartModel& m) const { return uses_rigid(m.rigid_island); }
-  /// Whether the parts of an island are evaluated together with its joints: in turn, each at the latest
-  /// before the first joint that needs it, while both are in the cache. This is impossible with loads, which
-  /// need the positions of all parts first, and with threads, among which the parts are divided.
+  /// Returns whether the parts of an island are evaluated together with its joints: each part before the
+  /// first joint on it, while part and joint are in the cache. This is impossible with loads, which need the
+  /// positions of all parts first, and with threads, among which the parts are divided.
   bool with_joints(const Island& island) const {
     return dynamics.pool() == nullptr && !island.loaded && !uses_rigid(island);
   }

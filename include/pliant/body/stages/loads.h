@@ -39,7 +39,7 @@ class LoadStage {
     if (ref.part < 0) return;
     e_.part_work(ref.part).port_force[static_cast<std::size_t>(ref.port)] += force * S(sign);
   }
-  /// Whether the part of an end has coordinates.
+  /// Returns whether an end is on a part that has coordinates.
   bool moves(const PortRef& ref) const { return ref.part >= 0 && e_.part(ref.part).q0 >= 0; }
   S& power(Work kind) { return power_[static_cast<int>(kind)]; }
 
@@ -52,7 +52,7 @@ class LoadStage {
       damping = d_dot * S(s.spring->damping);
     } else {
       const S length2 = d.dot(d);
-      if (plain(length2) == 0) return;  // no direction; NaN passes, and the step reports it
+      if (plain(length2) == 0) return;  // no direction, no force; the step reports NaN
       const S length = math::sqrt(length2);
       const Vec3<S> along = d / length;
       pull = along * S((length - s.spring->rest_length) * s.spring->stiffness);
@@ -62,7 +62,7 @@ class LoadStage {
     push(s.a, force, 1);
     push(s.b, force, -1);
     power(Work::spring_damping) -= damping.dot(d_dot);
-    // A prescribed motion of an end does work against the pull of the spring on it.
+    // The prescribed motion of an end does work against the force of the spring on this end.
     if (!moves(s.a)) power(Work::anchors) -= force.dot(a.x_dot);
     if (!moves(s.b)) power(Work::anchors) += force.dot(b.x_dot);
   }

@@ -20,7 +20,8 @@ namespace pliant::detail {
 
 // Stage 1: positions.
 
-/// Computes c, R, q_s and v_r of a part at time t. Returns the motion of a part whose motion is prescribed.
+/// Computes c, R, q_s, q_s_dot and v_r of a part at time t (s). Returns the prescribed motion of the part, or
+/// nothing if its motion is not prescribed.
 template <class S>
 std::optional<MovingFrame> place_frame(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v,
                                        PartWorkspace<S>& w) {
@@ -55,7 +56,7 @@ void place_local(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWor
   }
 }
 
-/// Adds the local deformation at the ports to their positions and velocities, Eq. (2).
+/// Adds d and d_dot at the ports to p and its rate, Eq. (2).
 inline void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
   VecX<double> d_buffer, d_dot_buffer;
   const auto d = m.local->at_nodes(w.local->d.data(), d_buffer),
@@ -145,7 +146,8 @@ void evaluate_mass(const PartModel& m, PartWorkspace<S>& w) {
 
 // Stage 3: forces.
 
-/// Subtracts K (q_s - rest) + D q_s_dot from the forces and adds the powers of damping and actuation.
+/// Subtracts K (q_s - rest) + D q_s_dot from the forces, and adds the powers of damping and actuation to the
+/// power of the part. If the part has a continuum energy, also adds the force and damping of this energy.
 template <class S>
 void add_elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
   const Part& part = *m.part;
@@ -238,13 +240,14 @@ void add_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 
 // Stage 5: accelerations of the part alone.
 
-/// Whether any velocity of a part has no inertia now.
+/// Returns whether any velocity of a part has no inertia now.
 inline bool has_inertialess_velocity(const PartWorkspace<double>& w) {
   if (w.local) return w.local->without_inertia.any();
   return w.rigid != nullptr ? w.rigid->rigid_factor.any_excluded() : w.factor.any_excluded();
 }
 
-/// Factors M of a part.
+/// Factors M of a part. M of a rigid part has a constant factor. M of a part that deforms locally is computed
+/// here, unless neither a joint nor a limit can push on the part.
 inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // neither a joint nor a limit can push on the part
@@ -328,8 +331,8 @@ void keep_pushed_limits(const Model& model, int part, const std::vector<int>& pr
   for (int i = 0; i < n; ++i) a_r += responses[static_cast<std::size_t>(i)] * lambda[i];
 }
 
-/// Stage 5 of a part: M a = f without joints. Limits act on a part without joints here; on a part of an
-/// island they act together with the joints.
+/// Stage 5 of a part: M a = f without joints. On a part without joints, limits act here. On a part of an
+/// island, limits act together with the joints, in stage 4.
 template <class S>
 void accelerate_freely(const Evaluation<S>& e, int i) {
   const PartModel& m = e.part(i);
