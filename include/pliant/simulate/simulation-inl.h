@@ -104,8 +104,8 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   if (!automatic) set_method(make_integrator(integrator));
   const bool projected = body.stabilization.projection.value_or(true);
   const bool first_order = !automatic && integrator_->order() == 1;
-  // In contact, the steps of a method with implicit local elasticity are of first order. With a tolerance
-  // this has no effect on the joints, because the steps are short enough.
+  // In contact, the steps of a method with implicit local elasticity are of first order. With a tolerance the
+  // policy ignores this reduction of the order, because the steps are short enough.
   const bool first_order_in_contact = !automatic && integrator_->local_is_implicit() && !scale_;
   dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {

@@ -30,7 +30,7 @@ class Simulation {
   /// the length of the steps; with kAutomatic, tolerance 0 means kStandardTolerance. Throws
   /// std::invalid_argument for an invalid model, method or tolerance, and for a tolerance with a method that
   /// has no error estimate. Throws UnsatisfiableModel if joints contradict each other, and NumericalFailure
-  /// if a number is not finite or an element is inverted.
+  /// if the initial state cannot be evaluated or projected.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
