@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the first pictures on a new Debian machine: installs missing packages, builds the program, runs a scene.
+# Draws the first pictures on a new Debian machine: installs missing packages, builds the program and runs a scene.
 # Ends with status 4 if packages are missing and cannot be installed.
 set -eu
 cd "$(dirname "$0")/.."

@@ -1,14 +1,15 @@
-# Functions for apps/quickstart.sh, tests/run.sh and .ci/run: the Debian packages, their installation, and the build with a
-# preset of CMake. Source this file from POSIX sh with the project's folder as the current one.
+# Functions for apps/quickstart.sh, tests/run.sh and .ci/run: the lists of Debian packages, their installation, and the
+# build with a preset of CMake. Source this file from POSIX sh in the folder of the project.
 # shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
-# Minutes that a stage takes on 2 cores in a new folder. README.md states the first number. README.md and tests/README.md
-# state the sum of the other two.
+# Durations on 2 cores in a new folder, in minutes. README.md states the first number. README.md and tests/README.md state
+# the sum of the other two.
 pliant_minutes_program=4
 pliant_minutes_everything=10
 pliant_minutes_tests=10
 
-# Each word of these lists is a package. a|b,c means a, or both b and c if the distribution has no package a.
+# Each word of these lists is a package or a choice. The choice a|b,c means package a, or both b and c if the distribution
+# has no package a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
 # Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, and Python for
@@ -32,7 +33,7 @@ pliant_end() {
   fi
 }
 
-# Returns status 0 if all given packages are installed.
+# pliant_installed PACKAGE...: returns status 0 if all packages are installed.
 pliant_installed() {
   for installed_name; do
     case $(dpkg-query -W -f '${db:Status-Abbrev}' "$installed_name" 2>/dev/null) in
@@ -42,14 +43,14 @@ pliant_installed() {
   done
 }
 
-# Returns status 0 if the distribution has all given packages.
+# pliant_available PACKAGE...: returns status 0 if the distribution has all packages.
 pliant_available() {
   for available_name; do
     apt-cache policy "$available_name" 2>/dev/null | grep -q '^  Candidate: [^(]' || return 1
   done
 }
 
-# Prints the missing packages of a list. The arguments are the words of the list.
+# pliant_missing WORD...: prints the missing packages of a list with these words.
 pliant_missing() {
   for word; do
     wanted=
@@ -65,9 +66,9 @@ pliant_missing() {
   done
 }
 
-# Installs, as root or through sudo, the missing packages of the list pliant_packages and of the words in the arguments. If
-# that is impossible, prints the names of the missing packages and ends the script with status 4. On other systems than
-# Debian, only prints the names of all packages.
+# pliant_install WORD...: installs, as root or through sudo, the missing packages of pliant_packages and of the words. If
+# the installation is impossible, prints the names of the missing packages and ends the script with status 4. On systems
+# without dpkg-query or apt-get, only prints the names of all packages.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" $pliant_packages "$@"
@@ -94,7 +95,8 @@ pliant_install() {
   pliant_end
 }
 
-# Prints the number of compile jobs: one for each processor, at most one for each 2 GB of free memory, at least one.
+# pliant_jobs: prints the number of compile jobs: one for each processor, at most one for each 2 GB of available memory,
+# and at least one.
 pliant_jobs() {
   jobs=$(nproc 2>/dev/null || echo 1)
   by_memory=$(awk '/^MemAvailable/ { print int($2 / 2000000) }' /proc/meminfo 2>/dev/null)
@@ -103,7 +105,7 @@ pliant_jobs() {
   echo "$jobs"
 }
 
-# pliant_configure PRESET [option...]: configures build/PRESET, with Ninja and ccache if they are installed.
+# pliant_configure PRESET [option...]: configures build/PRESET. A new folder uses Ninja and ccache if they are installed.
 pliant_configure() {
   preset=$1
   shift
@@ -114,8 +116,8 @@ pliant_configure() {
   cmake --preset "$preset" "$@"
 }
 
-# pliant_build PRESET [option...]: builds build/PRESET. Each line of Ninja begins with the elapsed time, because files take
-# very different times to compile.
+# pliant_build PRESET [option...]: builds build/PRESET. Each line of Ninja begins with the elapsed time, because the compile
+# times of files differ greatly.
 pliant_build() {
   preset=$1
   shift

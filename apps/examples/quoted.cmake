@@ -1,7 +1,7 @@
 # Checks the quotations on the pages. README.md quotes the scene scenes/two_parts.json and the program two_parts.cpp.
 # apps/examples/README.md quotes excerpts of the examples. scenes/README.md shows a scene, which the program must accept, and
 # the messages about mistakes in it.
-# SOURCE: folder of the project; PROGRAM: path of the built program pliant; FOLDER: a folder for scenes.
+# SOURCE: folder of the project; PROGRAM: path of the built program pliant; FOLDER: folder for the scenes that this check writes.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/tests/package/page_block.cmake)
 

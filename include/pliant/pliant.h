@@ -1,6 +1,6 @@
-// Everything a user of the engine needs: shapes, deformations, parts, joints, bodies, simulations. Meshes of
-// surfaces and insides included; scenes, files and pictures are libraries of their own (pliant/scene,
-// pliant/io, pliant/render).
+// Includes the headers of the engine for programs: shapes, deformations, parts, joints, bodies, simulations,
+// and meshes of surfaces and solids. Scenes, files and pictures are in other libraries, with headers in
+// pliant/scene, pliant/io and pliant/render.
 #pragma once
 
 #include <pliant/body/joints/all_joints.h>

@@ -1,6 +1,6 @@
-// The list of global deformations. A new deformation needs its own file, included here, and an entry in
-// PLIANT_ALL_DEFORMS. The registry, the explicit instances, the schema, `pliant list` and the law tests
-// follow from this list.
+// The list of global deformations. To add a deformation, include its file here and add its struct to
+// PLIANT_ALL_DEFORMS. The registry, the explicit instances, the JSON Schema, `pliant list` and the tests of
+// all deformations use this list.
 #pragma once
 
 #include <tuple>

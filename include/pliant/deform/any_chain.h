@@ -1,5 +1,5 @@
-// AnyChain: a chain of global deformations composed at run time, for scenes. Its links use the kernels of a
-// typed Chain, so both give equal bits.
+// AnyChain: a chain of global deformations composed at run time, for scenes. AnyChain and Chain (chain.h) use
+// the same kernels, so that their results are bitwise equal.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,9 @@
 
 namespace pliant {
 
-/// The interface of one link. One virtual call handles all jets of a batch. The functions have the arguments
-/// and results of link_info and link_inverse (chain.h), link_acts and apply_link (link.h).
+/// The interface of one link. One virtual call processes all jets of a batch. info(), inverse(), acts() and
+/// apply() have the arguments and results of link_info and link_inverse (chain.h), link_acts and apply_link
+/// (link.h).
 class AnyLink {
  public:
   virtual ~AnyLink() = default;
@@ -47,7 +48,7 @@ class AnyLinkOf final : public AnyLink {
   }
 };
 
-/// A chain of links of any type. Its functions are those of Chain (chain.h).
+/// A chain of links of any type. Its functions have the arguments and results of those of Chain (chain.h).
 class AnyChain {
  public:
   AnyChain() = default;

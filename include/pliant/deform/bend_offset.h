@@ -1,6 +1,6 @@
 // The bend of Metaxas and Terzopoulos 1993, reference [7] of the paper: a lateral offset along x,
 //   (x + b1 cos(pi b3 (zeta + b2)), y, z)
-// It does not preserve the length of the axis, so it represents small bends only.
+// It does not preserve the length of the axis. Use it for small bends only. zeta = z / h, h: half height.
 #pragma once
 
 #include <pliant/deform/deform.h>

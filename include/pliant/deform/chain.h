@@ -1,5 +1,5 @@
-// Chain<Taper, Bend>: a chain of global deformations T, Eq. (3), for library users. Its type fixes the order
-// of the links.
+// Chain<Taper, Bend>: a chain of global deformations, T of Eq. (3), whose type fixes the order of the links.
+// Scenes use AnyChain (any_chain.h) instead.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace pliant {
 
 /// The properties of a link, independent of its type.
 struct LinkInfo {
-  const char* type;
+  const char* type;  ///< name of the deformation
   const ParameterSpec* parameters;
   int n_parameters;
-  int amplitudes;  ///< while the first `amplitudes` parameters have their defaults, the link is the identity
+  int amplitudes;  ///< if the first `amplitudes` parameters have their defaults, the link is the identity
   Sections sections;
 };
 
@@ -26,8 +26,8 @@ LinkInfo link_info() {
           Deform::sections};
 }
 
-/// Returns the position that one link maps to p (m, body frame). h: half height (m); b: parameters of the
-/// link.
+/// Returns the position (m, body frame) whose image under one link is p. h: half height (m); b: parameters of
+/// the link.
 template <class Deform>
 Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
   if (is_identity<Deform>(b)) return p;
@@ -56,8 +56,8 @@ class Chain {
     (apply_one<Links>(half, all, batch), ...);
   }
 
-  /// Returns the position e that the chain maps to p (m, body frame). h: half height (m); b: the parameters
-  /// of all links.
+  /// Returns the position e (m, body frame) whose image under the chain is p. h: half height (m); b: the
+  /// parameters of all links, one link after the other.
   Vec3<double> inverse(Vec3<double> p, double h, const double* b) const {
     const double* end = b + (0 + ... + deform_size<Links>);
     invert<Links...>(p, h, end);

@@ -1,16 +1,16 @@
-// The interface of a global deformation T, Eq. (3). A deformation is one struct with a name, parameters b and
-// a formula T(p, h; b), which is a template on its scalar. p is the incoming position (m, body frame), h the
-// half height of the shape (m), and zeta = p_z / h.
+// The interface of a global deformation, Eq. (3). A deformation is one struct with a name, parameters b and a
+// formula T(p, h; b), which is a template on its scalar. p is the position before the deformation (m, body
+// frame), h the half height of the shape (m), and zeta = p_z / h.
 //
 //   name, formula      texts for scene files, messages and `pliant list`
-//   parameters         std::array<ParameterSpec, n>
+//   parameters         std::array<ParameterSpec, n>, the n parameters b
 //   sections           image of the planes z = const, which decides the quadrature of the mass
 //   apply(p, h, b)     T(p, h; b); the identity if all parameters have their defaults
-//   inverse(p, h, b)   the position that apply maps to p
+//   inverse(p, h, b)   the position whose image under apply is p
 //   prepare(b)         optional: returns terms of T that depend on b alone. A deformation with prepare also
 //                      needs apply(p, h, b, terms), which returns T(p, h; b)
-//   amplitudes         optional: a number n <= number of parameters. While the first n parameters have their
-//                      defaults, T is the identity for all values of the others. Default: all parameters
+//   amplitudes         optional: a number m <= n. If the first m parameters have their defaults, T is the
+//                      identity for all values of the other parameters. Default: n
 #pragma once
 
 #include <array>
@@ -41,7 +41,8 @@ template <class Deform, class = void>
 inline constexpr int amplitudes_of = deform_size<Deform>;
 template <class Deform>
 inline constexpr int amplitudes_of<Deform, std::void_t<decltype(Deform::amplitudes)>> = Deform::amplitudes;
-/// T(p, h; b) for fixed b. If the deformation has the member prepare, its terms are computed once.
+/// T(p, h; b) for fixed b. If the deformation has the member prepare, the constructor computes the terms that
+/// depend on b alone.
 template <class Deform, class T, class = void>
 struct Prepared {
   explicit Prepared(const Vec<T, deform_size<Deform>>&) {}
@@ -61,7 +62,7 @@ struct Prepared<
 };
 }  // namespace detail
 
-/// The function p -> T(p, h; b) of a deformation for fixed h and b. It is applied to many positions.
+/// The function p -> T(p, h; b) of a deformation for fixed h and b.
 template <class Deform, class T>
 class DeformBy {
  public:
@@ -78,8 +79,9 @@ class DeformBy {
 template <class Deform>
 inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
 
-/// Returns whether a deformation is exactly the identity for all p and h. b: its parameters, an array; a
-/// dual number with a nonzero derivative differs from the default.
+/// Returns whether a deformation is exactly the identity for all p and h: the first `amplitudes` parameters
+/// have their defaults. b: array of all parameters. A dual number with a non-zero derivative differs from the
+/// default.
 template <class Deform, class P>
 bool is_identity(const P* b) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(deform_amplitudes<Deform>); ++k)

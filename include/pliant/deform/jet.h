@@ -1,10 +1,9 @@
 // Jets: the values and derivatives that the chain of deformations computes for each material point. S is the
-// scalar of a point: Pack (four points at once), Dual<1, Pack> for directional derivatives, or any other
-// scalar.
+// number type: Pack (four points at once), Dual<1, Pack> (with directional derivatives) or another scalar.
 //   s                position on the reference shape (m, body frame), Eq. (3)
 //   s1 = J qs_dot    rate of s (m/s), Eq. (7)
 //   s2 = Jdot qs_dot second time derivative of s for constant qs_dot (m/s^2)
-//   J               columns ds/dq_s of the dynamic parameters, in the order of q_s, Eq. (9)
+//   J                columns ds/dq_s of the dynamic parameters, in the order of q_s, Eq. (9)
 #pragma once
 
 #include <array>
@@ -13,7 +12,7 @@
 
 namespace pliant {
 
-/// The values of one material point (or of one Pack of them).
+/// The values of one material point, or of the four points of a Pack.
 template <class S>
 struct Jet {
   Vec3<S> s, s1, s2;
@@ -27,7 +26,7 @@ enum class Level { position, jacobian, rates };
 template <class S>
 struct JetBatch {
   Jet<S>* jet;
-  int count;
+  int count;      ///< number of jets
   int n_columns;  ///< number of columns of J computed so far
   Level level;
 };

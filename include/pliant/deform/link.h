@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-/// The half height of the shape, input of every link. P is the scalar of the parameters.
+/// The half height h of the shape, an input of every link. P is the scalar of the parameters.
 template <class P>
 struct HalfHeight {
   Taylor2<P> h;                 ///< value (m) and first two time derivatives
@@ -28,7 +28,7 @@ struct LinkParameters {
   const bool* dynamic;  ///< whether each parameter is a degree of freedom
 };
 
-/// Returns whether a link acts: it is not the identity, or one of its parameters is dynamic. A link
+/// Returns whether a link acts: it is not the identity, or at least one of its parameters is dynamic. A link
 /// that does not act is skipped.
 template <class Deform, class P>
 bool link_acts(const LinkParameters<P>& parameters) {
@@ -37,9 +37,10 @@ bool link_acts(const LinkParameters<P>& parameters) {
   return !is_identity<Deform>(parameters.b);
 }
 
-/// Applies a link whose parameter number k is its only dynamic one. The shape and all links before it must be
-/// frozen: the incoming positions are then constant. One Taylor2 number in this parameter gives s, J and the
-/// rates s1 and s2; at Level::jacobian a dual number gives s and J.
+/// Applies a link to a batch of jets if parameter k of the link is dynamic and all its other parameters are
+/// frozen. The shape and all earlier links must be frozen, so that the incoming positions are constant. At
+/// Level::rates, one Taylor2 number in parameter k gives s, J, s1 and s2. At Level::jacobian, one dual number
+/// gives s and J.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                        JetBatch<S>& batch) {
@@ -71,9 +72,9 @@ template <class Deform, class P, class S>
   batch.n_columns = 1;
 }
 
-/// Updates the columns of J of one material point by the partial derivatives of one link, Eq. (9). moved: T
-/// with its derivatives by p (directions 0 to 2), h (direction 3) and b (from direction 4 on). n_columns:
-/// number of columns before the link.
+/// Updates the columns of J of one material point by the partial derivatives of one link, Eq. (9), and
+/// appends one column for each dynamic parameter of the link. moved: T with its derivatives by p (directions
+/// 0 to 2), h (direction 3) and b (from direction 4 on). n_columns: number of columns before the link.
 template <int N, class P, class S>
 void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
                    const LinkParameters<P>& parameters, int n_columns, Jet<S>& jet) {
@@ -95,8 +96,9 @@ void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
   }
 }
 
-/// Applies one link to a batch of jets: s <- T(s, h; b), J <- [F J + T_h dh/da, G_T], and s1, s2 by the chain
-/// rule for the first and second time derivative. Computes the quantities of batch.level only.
+/// Applies one link to a batch of jets: s <- T(s, h; b), J <- [F J + T_h dh/da, G_T]; the chain rule for the
+/// first and second time derivatives gives s1 and s2. Computes only the quantities of batch.level. A link
+/// that does not act changes nothing.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                  JetBatch<S>& batch) {

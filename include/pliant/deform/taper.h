@@ -1,4 +1,4 @@
-// Taper (Barr 1984): (x (1 + tx zeta), y (1 + ty zeta), z).
+// Taper (Barr 1984): (x (1 + tx zeta), y (1 + ty zeta), z), zeta = z / h.
 #pragma once
 
 #include <pliant/deform/deform.h>
@@ -26,9 +26,9 @@ struct Taper {
   }
 
  private:
-  /// Returns `width`, the width of a section relative to the middle section, or 1e-10 if |width| is at most
-  /// 1e-10. The width is zero at the tip of a full taper (|tx| or |ty| = 1); with the bound, the inverse maps
-  /// the tip to the axis.
+  /// Returns width, or 1e-10 if |width| <= 1e-10. width: factor of the section relative to the middle
+  /// section. It is zero at the tip of a full taper (|tx| or |ty| = 1); with the bound, the inverse maps the
+  /// tip to the axis.
   template <class T>
   static T bounded_width(const T& width) {
     const T min_width(1e-10);

@@ -1,4 +1,4 @@
-// Twist (Barr 1984): each section z = const is rotated about z by angle * zeta.
+// Twist (Barr 1984): each section z = const is rotated about z by angle * zeta, zeta = z / h.
 #pragma once
 
 #include <pliant/deform/deform.h>

@@ -1,4 +1,4 @@
-// Linear elasticity. From the displacement gradient H = dd/dX, with eps = (H + H^T)/2,
+// Linear elasticity. With the displacement gradient H = dd/dX and eps = (H + H^T)/2,
 //   W = lambda/2 (tr eps)^2 + mu eps:eps,   P = lambda tr(eps) I + 2 mu eps.
 // W: energy for each unit of rest volume, J/m^3. P: stress, Pa.
 #pragma once
@@ -9,13 +9,12 @@
 
 namespace pliant {
 
-/// Every material law, here and in local/solid, has these members: `of`, the argument of the energy;
-/// `constant`, see below; Lame's constants lambda and mu (Pa), which viscous damping uses; density(), which
-/// returns W; stress(), which returns P = dW/dH (dW/dF for large deformation); stress_along(), which returns
-/// the derivative of P along dH (or dF). T: double, Pack or a dual number.
+/// Every material law, here and in local/solid, has these members. `of`: argument of the energy. `constant`:
+/// whether the derivative of P is constant. lambda, mu: Lame's constants (Pa), which viscous damping uses.
+/// density() returns W. stress() returns P = dW/dH, or dW/dF for large deformation. stress_along() returns
+/// the derivative of P along dH or dF. T: double, Pack or a dual number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
-  /// Whether the derivative of P does not depend on the gradient.
   static constexpr bool constant = true;
   double lambda, mu;
 

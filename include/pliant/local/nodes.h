@@ -1,7 +1,7 @@
 // Storage of the local coordinates q_d of a part with a mesh, Eq. (6). The vector contains the x
-// displacements of all nodes, then all y, then all z displacements. After them follow the own coordinates of
-// energies that have some, for example the edge rotations of bending. Nodal positions and nodal forces use
-// this order too.
+// displacements of all nodes, then all y, then all z displacements. Then follow the own coordinates of the
+// energies, for example the edge rotations of bending. Positions and forces of nodes are also stored in this
+// order.
 #pragma once
 
 #include <pliant/math/types.h>

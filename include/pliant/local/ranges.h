@@ -1,6 +1,5 @@
-// Parallel loops over elements or nodes, in ranges of fixed length. The ranges do not depend on the number of
-// threads, and each range writes only its own memory. Results therefore do not depend on the number of
-// threads.
+// Parallel loops over elements or nodes, in ranges of fixed length. If each range writes only the memory of
+// its own elements or nodes, results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +9,8 @@
 
 namespace pliant {
 
-/// Calls body(first, last) for ranges of at most `length` that cover [0, n). Makes a single call in the
-/// calling thread if pool is nullptr or one range is enough. Allocates no heap memory.
+/// Calls body(first, last) for ranges of at most `length` that cover [0, n). If pool is nullptr or n <=
+/// length, calls body(0, n) once in the calling thread. Allocates no heap memory.
 template <class Body>
 void for_ranges(int n, int length, ThreadPool* pool, Body&& body) {
   if (pool == nullptr || n <= length) {
@@ -22,9 +21,9 @@ void for_ranges(int n, int length, ThreadPool* pool, Body&& body) {
   pool->run((n + length - 1) / length, std::ref(task));
 }
 
-/// Calls f(first, last) for every block of `length` indices in [0, n); the last block may be shorter. Unlike
-/// for_ranges, it calls f once for each block without a pool too, so that f may derive the block number from
-/// `first`.
+/// Calls f(first, last) for every block of `length` indices in [0, n); the last block may be shorter. If pool
+/// is nullptr, f is called in the calling thread, also once for each block. f may therefore compute the
+/// number of the block from `first`.
 template <class F>
 void for_blocks(int n, int length, ThreadPool* pool, F&& f) {
   auto task = [&](int block) { f(block * length, std::min(n, (block + 1) * length)); };

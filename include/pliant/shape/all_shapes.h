@@ -1,5 +1,5 @@
-// The list of shapes. A new shape needs its own file, included here, and an entry in PLIANT_ALL_SHAPES. The
-// registry, the explicit instances, the schema, `pliant list` and the law tests follow from this list.
+// The list of shapes. To add a shape, include its file here and add its struct to PLIANT_ALL_SHAPES. The
+// registry, the explicit instances, the JSON Schema, `pliant list` and the tests of all shapes use this list.
 #pragma once
 
 #include <tuple>

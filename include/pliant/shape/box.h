@@ -1,4 +1,4 @@
-// Box with half sizes a1, a2, a3: a cylinder whose section is the unit square,
+// Box with half sizes a1, a2, a3. With (X, Y) on the edge of the square |X|, |Y| <= 1,
 //   (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|),   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
 #pragma once
 

@@ -1,6 +1,6 @@
 // Capsule: a cylinder of radius r and length l along z between two half balls. The side has |u| <= pi/4, and
-// the caps have |u| > pi/4. On a cap the angle from the z axis, seen from the centre of its ball, is twice
-// the material angle from the pole, pi/2 - |u|. e is w times the surface point:
+// the caps have |u| > pi/4. On a cap, the polar angle about the centre of the half ball is 2 (pi/2 - |u|).
+// e is w times the surface point:
 //   side  (r C_v, r S_v, (l/2) tan u)
 //   cap   (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
 #pragma once

@@ -1,4 +1,4 @@
-// Cone and frustum: a cylinder whose section scales along z by the factor 1 + t z / a3. With t = -1 it is a
+// Cone and frustum: a cylinder whose section is scaled by the factor 1 + t z / a3. For t = -1 the shape is a
 // cone with its tip at z = a3. With the surface point k of the unit cylinder (cylinder.h),
 //   e = w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z)
 #pragma once
@@ -42,7 +42,7 @@ struct Cone {
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
   /// Returns the surface point for direction g of the mesh pattern. A cone with a tip (|t| = 1) has only one
-  /// end face; the vertices of the other end face are spread over the side.
+  /// end face; the side then also receives the vertices of the other end face.
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);
@@ -61,7 +61,7 @@ inline Material<double> Cone::mesh_label(const Vec3<double>& g, const Vec<double
   const double ring = std::hypot(g[0], g[1]);
   const double tip = a[3] == -1 ? 1.0 : -1.0;
   if (std::abs(a[3]) != 1 || ring == 0 || tip * g[2] <= -ring) return material_towards(g);
-  // Map the latitudes from the rim (-45 degrees) to the tip (90 degrees) linearly to z.
+  // Map the latitude, positive towards the tip, linearly to z: -45 degrees is the rim, 90 degrees the tip.
   const double rise = (std::atan2(tip * g[2], ring) + detail::kRimAngle) / (3 * detail::kRimAngle);
   const double k = tip * (2 * rise - 1), size = std::hypot(1.0, k);
   return material_from(1 / size, k / size, g[0] / ring, g[1] / ring);

@@ -1,4 +1,4 @@
-// Conversions of material points: from angles and directions, with derivatives, into packs.
+// Function bodies of material.h: material points from angles and directions, their derivatives, and Packs.
 #pragma once
 
 #include <pliant/shape/material.h>
@@ -44,8 +44,8 @@ PLIANT_INLINE Material<Dual<3>> material_with_tangents(double u, double v, doubl
 
 PLIANT_INLINE Material<Dual<3>> material_with_tangents(const Material<double>& m) {
   Material<Dual<3>> r;
-  // The derivatives are by u. Where |cos u| or |sin u| is below 1e-30 but not 0, the derivative of its
-  // logarithm would overflow; there the derivatives are along cos u sin u d/du. The same holds for v.
+  // The derivatives are by u and by v. Where |cos u| or |sin u| is below 1e-30 but not 0, the derivative of
+  // its logarithm could overflow. There d/du is multiplied by cos u sin u, and d/dv by cos v sin v.
   auto turn = [](const Trig<double>& c, const Trig<double>& s, std::size_t slot, Trig<Dual<3>>& rc,
                  Trig<Dual<3>>& rs) {
     constexpr double small = 1e-30;

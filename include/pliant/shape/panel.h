@@ -1,5 +1,5 @@
-// Intervals of a material angle, or of zeta = z / h, on which a shape is smooth. Each quadrature rule covers
-// one interval, so that no rule crosses a kink.
+// Intervals of a material angle, or of zeta = z / h (h: half height), on which a shape is smooth. Each
+// quadrature rule covers one interval, so that no rule crosses a kink.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,  ///< 45 degrees wide, from an angle with sin = 0 (or cos = 0); e varies as |sin|^eps (|cos|^eps)
+    power,     ///< 45 degrees from an angle with sin = 0 (cos = 0); e varies as |sin|^eps (|cos|^eps)
   };
   Kind kind;
   double from = 0, to = 0;         ///< smooth and periodic panels: angles at the ends, rad
@@ -22,8 +22,8 @@ struct Panel {
   double eps = 1;                  ///< power panel: exponent
 };
 
-/// Adds the two power panels of one quadrant for an exponent eps. If eps is frozen at 1, callers use a smooth
-/// or periodic panel instead.
+/// Adds the two power panels of one quadrant for an exponent eps. sign_cos, sign_sin: signs of cos and sin in
+/// the quadrant.
 inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sign_sin, double eps) {
   for (bool along_sin : {true, false})
     panels.push_back({Panel::Kind::power, 0, 0, sign_cos, sign_sin, along_sin, eps});

@@ -2,30 +2,35 @@
 //
 // Required members:
 //   name, formula     texts for scene files, messages and `pliant list`
-//   parameters        std::array<ParameterSpec, n>
+//   parameters        std::array<ParameterSpec, n>, the n parameters a
 //   e(m, a)           position (metres, body frame) of the material point m; a template on the scalars of m
 //                     and a
-//   half_height(a)    h (metres), half the extent along z; deformations use zeta = z / h
+//   half_height(a)    h (metres), half the extent along z; global deformations use zeta = z / h
 //   mesh              MeshPattern of the surface mesh
 //
-// Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. The default of gauge and
-// label is a Newton search, which needs a star-shaped solid. Closed forms in the shape are faster than this
-// search, and exact at the poles.
-//   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; never
-//                     overflows
-//   label(x, a)       material point at the position x, the inverse of e; requires gauge
+// Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. A shape has both gauge
+// and label, or neither; a gauge without label is not used. Their default is a Newton search, which needs a
+// star-shaped solid. Closed forms in the shape are faster than this search, and exact at the poles.
+//   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; must not
+//                     overflow
+//   label(x, a)       material point at the position x, the inverse of e; at the centre and on the z axis one
+//                     of the material points there
 //   mesh_label(g, a)  material point of the surface for a mesh vertex; g: direction of the vertex in the mesh
-//                     pattern, or for MeshPattern::torus (angle around the tube, angle around z, 0), rad
+//                     pattern, or for MeshPattern::torus (angle around the tube, angle around z, 0), rad.
+//                     Default: the material point towards g; MeshPattern::torus requires this member
 //   profile(a, moving), ring(a, moving)  quadrature panels along u and along v; e is smooth on each panel.
-//                     moving: whether an exponent is a degree of freedom
+//                     moving: whether an exponent is a degree of freedom. Default: one panel each, for
+//                     -pi/2 <= u <= pi/2 and for the whole circle of v
 //   ring_exponent(a)  exponent of the superellipse that a ring follows; a ring is a curve (u, w) = const
 //   RestMap           another shape with the same parameters and an equal surface; its map e generates the
 //                     quadrature points
-//   semi_axes(a)      for an ellipsoid: its semi-axes (metres). mesh_label must map the unit direction y to
-//                     the surface point with the coordinates y_i times semi-axis i
-//   half_sizes(a)     for a box about the origin: its half sizes (metres)
-//   bounded_exponents true if a changing exponent strains the material by bounded amounts
-//   linear_lengths    true if e is linear in the parameters that are lengths, for all values of the others
+//   semi_axes(a)      only for an ellipsoid: its semi-axes (metres). mesh_label must map the unit direction y
+//                     to the surface point with the coordinates y_i times semi-axis i
+//   half_sizes(a)     only for a box about the origin: its half sizes (metres)
+//   bounded_exponents exists only if a changing exponent strains the material by bounded amounts; its value
+//                     is not read
+//   linear_lengths    exists only if e is linear in the parameters that are lengths, for all values of the
+//                     other parameters; its value is not read
 //   section(zeta, gap, a)  plane section of the solid at zeta (Section); gap = 1 - |zeta|
 //   section_panels(a) intervals of zeta on which the section is smooth; required with section
 #pragma once
@@ -46,7 +51,7 @@ struct Section {
   double xx, yy;  ///< means of x^2 and of y^2 over the section, m^2
 };
 
-/// The grid pattern of a closed surface.
+/// The pattern of the surface mesh of a shape.
 enum class MeshPattern { ball, torus };
 
 /// Number of parameters of a shape.

@@ -1,4 +1,4 @@
-// Moments, inverse map and quadrature panels of the superellipse.
+// Function bodies of superellipse.h.
 #pragma once
 
 #include <pliant/shape/superellipse.h>

@@ -9,9 +9,9 @@
 
 namespace pliant {
 
-/// Returns the area and the mean square of a coordinate over the unit superellipse, in closed form: area
-/// eps B(eps/2, eps/2), mean square (eps/2) B(3 eps/2, eps/2) / area, with the Beta function B (Jaklic,
-/// Leonardis and Solina 2000).
+/// Returns the section of a solid that is the unit superellipse. With the Beta function B, the area is
+/// eps B(eps/2, eps/2), and both mean squares are (eps/2) B(3 eps/2, eps/2) / area (Jaklic, Leonardis and
+/// Solina 2000).
 Section superellipse_section(double eps);
 
 /// Returns the cosine C and the sine S of the material angle at which (C^eps, S^eps) points along (x, y). For
@@ -22,10 +22,12 @@ std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, dou
 /// given separately because 1 - |t| is inaccurate near |t| = 1.
 double superellipse_width(double t, double gap, double eps);
 
-/// Returns the panels of a material angle over the whole circle. eps: exponent of the superellipse;
-/// dynamic_exponent: whether eps is a degree of freedom.
+/// Returns the panels of a material angle over the whole circle: one periodic panel if eps is frozen at 1,
+/// otherwise eight power panels. eps: exponent of the superellipse; dynamic_exponent: whether eps is a degree
+/// of freedom.
 std::vector<Panel> circle_panels(double eps, bool dynamic_exponent);
-/// Returns the panels of a material angle from -pi/2 to pi/2.
+/// Returns the panels of a material angle from -pi/2 to pi/2: one smooth panel if eps is frozen at 1,
+/// otherwise four power panels.
 std::vector<Panel> half_circle_panels(double eps, bool dynamic_exponent);
 
 /// Returns the intervals of zeta = z / h for a shape whose sections have the width

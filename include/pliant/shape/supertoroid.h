@@ -1,5 +1,5 @@
-// Supertoroid (Barr 1981): a superellipse swept along a superellipse; -pi <= u, v < pi, w = 0 on the core
-// ring:
+// Supertoroid (Barr 1981): a superellipse, the tube, that is swept along a second superellipse, the core
+// ring. The angles are -pi <= u, v < pi, and w = 0 on the core ring:
 //   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
 #pragma once
 
@@ -70,8 +70,8 @@ inline std::vector<Panel> Supertoroid::ring(const Vec<double, 6>& a, bool dynami
 inline Section Supertoroid::section(double zeta, double gap, const Vec<double, 6>& a) {
   const double q = superellipse_width(zeta, gap, a[4]), inner = a[3] - q, outer = a[3] + q;
   const Section unit = superellipse_section(a[5]);
-  // The section is between two similar superellipses. Relative to the unit superellipse, its area is outer^2
-  // - inner^2 = 4 a4 q, and its mean square is outer^2 + inner^2.
+  // The section is the region between two similar superellipses. In units of the unit superellipse, its area
+  // is outer^2 - inner^2 = 4 a4 q, and its mean squares are outer^2 + inner^2.
   const double area = 4 * a[3] * q, spread = inner * inner + outer * outer;
   return {unit.area * a[0] * a[1] * area, unit.xx * a[0] * a[0] * spread, unit.yy * a[1] * a[1] * spread};
 }

@@ -19,30 +19,30 @@ namespace pliant {
 
 namespace integrator_choice {
 
-/// Number of steps of a trial: kSteps. Methods that reuse factors take kStepsWithFactors steps, because their
-/// steps grow for longer. The first of kShares equal shares of the trial is not counted: the steps grow
-/// there, and transients of the start decay.
+/// Largest number of steps of a trial: kStepsWithFactors for methods that reuse factors, because their steps
+/// grow for a longer time; kSteps for other methods. The first of kShares equal shares of these steps is not
+/// counted, because steps grow and transients of the start decay there.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
 /// Longest trial, s.
 inline constexpr double kLongestTrial = 1e3;
-/// Cost of a factorisation of a dense matrix for n velocities: this times n^2 evaluations. An evaluation
-/// takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
+/// Cost of a factorisation of a dense matrix for n velocities: kFactorisation n^2 evaluations. An evaluation
+/// takes about 70 n ns and a factorisation about n^3 / 3 ns (bench/step_bench, on one core).
 inline constexpr double kFactorisation = 0.005;
-/// Cost of a sparse factorisation of the stiffness of nodes, in evaluations: this times the cube root of the
-/// number of nodal coordinates. Measured: 110 evaluations for 654 coordinates of a shell
-/// (bench/work_precision, ringing), some 200 for 14 739 of a solid (bench/implicit_bench).
+/// Cost of a sparse factorisation of the stiffness of nodes, in evaluations: kSparseFactorisation times the
+/// cube root of the number of nodal coordinates. Measured: 110 evaluations for a shell with 654 coordinates
+/// (bench/work_precision, ringing), about 200 for a solid with 14 739 coordinates (bench/implicit_bench).
 inline constexpr double kSparseFactorisation = 13;
-/// Cost of the solves of a step, in factorisations: 0.13 for that shell, 0.1 for that solid.
+/// Cost of the solves of a step, in factorisations. Measured: 0.13 for the shell above, 0.1 for the solid.
 inline constexpr double kSolves = 0.1;
-/// For tolerances of this value or more, most of the cost of a model with contact is that of the steps with
-/// contact, which are of second order for every method.
+/// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
+/// These steps are at most of second order for every method.
 inline constexpr double kCoarse = 1e-6;
 /// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
 
-/// Returns the simulated time (s) per evaluation of the accelerations, where factorisations and solves count
-/// as evaluations of equal cost; 0 if the method fails. factorisation: cost of a factorisation, in
-/// evaluations.
+/// Returns the simulated time (s) per cost of a trial of a method; 0 if the method fails. The cost is the
+/// number of evaluations of the accelerations, plus the cost of factorisations and solves in evaluations.
+/// factorisation: cost of one factorisation, in evaluations.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                    double factorisation) {
   State state = start;
@@ -84,7 +84,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
          (evaluations + factorisation * (factored + kSolves * (steps - first_timed)));
 }
 
-/// Returns whether the model has elasticity, damping or springs.
+/// Returns whether the model has springs, or a moving part with elasticity, damping or drag.
 inline bool has_stiffness(const Model& model) {
   if (!model.springs().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {

@@ -1,7 +1,7 @@
 // The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped, the
-// choice is an explicit method of high order. Otherwise each candidate integrates some steps from the start,
-// and the one that advances farthest at equal cost is chosen. The cost is counted in evaluations of the
-// accelerations by a fixed model, never by a clock.
+// choice is an explicit method of high order. Otherwise each candidate takes some steps from the start, and
+// the choice is the candidate with the most simulated time per cost. The cost is a number of evaluations of
+// the accelerations; no time is measured.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace pliant {
 
-/// The name that requests this choice, in place of the name of a method.
+/// The name that requests this choice; use it in place of the name of a method.
 inline constexpr const char* kAutomatic = "auto";
-/// Tolerance with this choice if none is given.
+/// The tolerance that is used with kAutomatic if none is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
 struct IntegratorChoice {
@@ -20,7 +20,8 @@ struct IntegratorChoice {
   std::string why;  ///< the reason, as text
 };
 
-/// Returns the choice. start: the state at time 0, with engaged joints.
+/// Returns the choice. If all candidates fail, it is the first candidate, dop853; between equal candidates it
+/// is the first one. start: the state at time 0, with engaged joints.
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Function bodies of failure_report.h: the parts of the messages of failed steps.
+// Function bodies of failure_report.h.
 #pragma once
 
 #include <pliant/simulate/failure_report.h>
@@ -28,8 +28,8 @@ PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
   return message.str();
 }
 
-/// Returns a text that names the first joint whose gap is not finite; empty if there is none. Rigid islands
-/// evaluate no gaps.
+/// Returns a text that names the first joint whose gap is not finite; empty if there is none. Joints of rigid
+/// islands (body/constraint/rigid_island.h) are ignored, because their gaps are not evaluated.
 inline std::string gap_not_finite(const Model& model, const Workspace<double>& work) {
   if (work.joints.C.allFinite()) return {};
   for (const JointModel& joint : model.joints()) {

@@ -1,5 +1,5 @@
-// Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x, where a(q) are the
-// accelerations; x are velocities that the joints allow.
+// Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -(da/dq) x, where a(q) are the
+// accelerations and x are velocities that the joints allow.
 #pragma once
 
 #include <pliant/simulate/fastest_sway.h>
@@ -21,12 +21,12 @@ namespace sway {
 /// Largest number of vectors of Lanczos' method.
 inline constexpr std::size_t kMaxVectors = 30;
 /// The iteration ends if the norm of the next vector is below this share of the largest norm of an image of
-/// the map: such a vector is rounding.
+/// the map, because this vector then consists of rounding errors.
 inline constexpr double kVanished = 1e-9;
 
-/// The map x -> -da/dq x, a the accelerations, on the velocities that the joints allow. It is symmetric in
-/// the mass metric for parts at rest. Its eigenvalues are omega^2 of oscillations, and negative for unstable
-/// motions.
+/// The map x -> -(da/dq) x on the velocities x that the joints allow; a are the accelerations. For parts at
+/// rest the map is symmetric in the mass metric. A positive eigenvalue is omega^2 of an oscillation; a
+/// negative eigenvalue belongs to an unstable motion.
 class Sway {
  public:
   Sway(const Dynamics& dynamics, const State& state, Workspace<double>& work)
@@ -36,7 +36,8 @@ class Sway {
         work_(work),
         along_{VecX<double>(), VecX<double>::Zero(state.v.size())} {}
 
-  /// Returns the largest eigenvalue, by Lanczos' method with full orthogonalisation.
+  /// Returns the largest eigenvalue, by Lanczos' method with full orthogonalisation; 0 if the joints allow no
+  /// motion.
   double largest() {
     VecX<double> x(state_.v.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + static_cast<double>(i));
@@ -70,8 +71,8 @@ class Sway {
     return dynamics_.jvp(state_.time(), state_.q, state_.v, along_, work_, dual_work_);
   }
 
-  /// Projects changes of the velocities of all parts so that C_q x = 0. Sets those of parts without joints to
-  /// zero.
+  /// Projects changes x of the velocities of all parts so that C_q x = 0. Sets the changes of parts without
+  /// joints to zero.
   void project_onto_joints(VecX<double>& all) {
     VecX<double> allowed = VecX<double>::Zero(all.size()), x, rows;
     for (const Island& island : model_.islands()) {

@@ -12,8 +12,8 @@
 namespace pliant {
 
 namespace predicted_conflict {
-/// Longest prediction, in units of 1 / rate of the stabilization, and the factor from one prediction to the
-/// next.
+/// Longest time of prediction, in units of 1 / Stabilization::rate, and ratio of a time of prediction to the
+/// previous one.
 inline constexpr double kMaxPrediction = 0.01, kPredictionGrowth = 10;
 }  // namespace predicted_conflict
 

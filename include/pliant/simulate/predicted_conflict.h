@@ -1,15 +1,15 @@
-// Prediction of joints that contradict each other at the end of a step. Methods that iterate, or that shorten
-// their steps, fail before they reach the contradiction.
+// Prediction of joints that contradict each other soon after a state. Methods that iterate, or that shorten
+// their steps, fail before the time of the contradiction and cannot name these joints.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// Throws UnsatisfiableModel if the projection of joints finds a contradiction h seconds after the state, or
-/// at a few later times: up to 10 h, or up to 0.01 / Stabilization::rate if that is later. Only the time is
-/// advanced, and with it prescribed paths. Returns otherwise, or if a contradiction can be neither found nor
-/// excluded.
+/// Throws UnsatisfiableModel if the projection of joints finds a contradiction h, 10 h, 100 h, ... seconds
+/// after the state. The largest of these times is at most 10 h or 0.01 / Stabilization::rate, whichever is
+/// longer. Only the time and the prescribed paths are advanced; parts stay in place. Returns if no
+/// contradiction is found, or if a projection fails for another reason.
 void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
 // The steps of a simulation. The stages of a step, with the files that contain them:
-//   1 begin      store the state, which a failed step restores          this file
+//   1 begin      store the state, to restore it if the step fails       this file
 //   2 switch     engage and release joints at their times               project/joint_switching-inl.h
 //   3 integrate  advance q, v and work by the method of integration     method/*-inl.h
 //                evaluate the accelerations, Eqs. (11)-(14)             body/dynamics-inl.h
@@ -36,10 +36,11 @@
 namespace pliant {
 
 namespace simulation {
-/// Times are equal within this share of a step, or this number of units in the last place.
+/// Times are equal if they differ by at most kNear times the step, or by at most kUlps units in the last
+/// place.
 inline constexpr double kNear = 1e-9, kUlps = 8;
-/// If the projection of joints fails after a step, the step is tried again as this number of shorter steps,
-/// to find out whether its length is the cause.
+/// If joints contradict each other after a step, the step is tried again as this number of shorter steps, to
+/// determine whether the length of the step is the cause.
 inline constexpr int kShorterSteps = 16;
 /// Shortest step with a tolerance, as a share of the time.
 inline constexpr double kMinStep = 16 * std::numeric_limits<double>::epsilon();
@@ -53,7 +54,7 @@ inline void require_tolerance(double tolerance) {
   throw std::invalid_argument(message.str());
 }
 
-/// Calls act(), and turns the failure of an inverted element into a NumericalFailure at time t, s.
+/// Calls act() and returns its result. Throws NumericalFailure with time t (s) in place of InvertedElement.
 template <class F>
 auto at_time(double t, F&& act) {
   try {
@@ -63,8 +64,8 @@ auto at_time(double t, F&& act) {
   }
 }
 
-/// Throws std::invalid_argument if the contact cache of a state is not finite, has a negative age, belongs to
-/// another model or is not sorted.
+/// Throws std::invalid_argument if the contact cache of a state contains numbers that are not finite, has a
+/// negative age, does not fit the model or is not sorted by pairs of bodies.
 inline void check_contact_cache(const State& state, const Model& model) {
   if (state.contact_cache_age < 0)
     throw std::invalid_argument("the contact cache of this state has a negative age");
@@ -104,7 +105,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   const bool projected = body.stabilization.projection.value_or(true);
   const bool first_order = !automatic && integrator_->order() == 1;
   // In contact, the steps of a method with implicit local elasticity are of first order. With a tolerance the
-  // steps are short enough.
+  // policy ignores this reduction of the order, because the steps are short enough.
   const bool first_order_in_contact = !automatic && integrator_->local_is_implicit() && !scale_;
   dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {
@@ -167,8 +168,8 @@ PLIANT_INLINE void Simulation::begin_step() {
   switching_.begin_step();
 }
 
-/// Calls step() for a step of h seconds. If it throws, restores the last good state and completes the
-/// message.
+/// Calls step() for a step of h seconds. If step() throws, restores the state before the step, completes the
+/// message of the failure and throws it again.
 template <class Advance>
 void Simulation::with_rollback(double h, Advance&& step) {
   try {
@@ -218,7 +219,7 @@ PLIANT_INLINE void Simulation::step_up_to(double until) {
     StepContext begin = context();
     state_.h = first_step(begin, *scale_, order);
   }
-  // A step that ends near `end` is extended to it, at most by this factor.
+  // A step that ends shortly before `end` is extended to `end`, at most by this factor.
   constexpr double max_extension = 1.1;
   const Kink kink =
       model_.next_kink(now + min_step, std::min(end, now + max_extension * state_.h) + min_step);
@@ -240,10 +241,9 @@ PLIANT_INLINE void Simulation::reject_step() {
   if (contact_) contact_->undo_step();
 }
 
-/// Attempts a step of the length in the state and returns its error. The error of the method includes that of
-/// located impacts. If parts rest on each other, or if impacts were not located, step doubling estimates the
-/// error of contact. With many moving parts, or with contacts at nodes, this error is not estimated, and the
-/// length of the step is limited instead (estimate_contact_error).
+/// Attempts a step of the length in the state and returns its error; the error is infinite if the step fails.
+/// The error estimate of the method includes the error of located impacts. If parts rest on each other, or if
+/// impacts were not located, estimate_contact_error() adds the error of contact.
 PLIANT_INLINE StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();
@@ -273,11 +273,12 @@ PLIANT_INLINE StepError Simulation::try_step() {
 }
 
 /// Includes the error of contact in the result of a step with resting contacts, or with impacts that were not
-/// located. impacts: the count of impacts before the step.
+/// located. Step doubling estimates this error. With many moving parts or contacts at nodes, the error is
+/// instead the ratio of the step to longest_contact_step(). impacts: number of impacts before the step.
 PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& result) {
   const bool may_double = contact_->may_double();
-  // The work of forces on resting bodies is computed for a motion that the contacts prevent. Short steps
-  // limit this error.
+  // The work of point forces on resting bodies is computed for a motion that the contacts prevent. Short
+  // steps limit the error of this work.
   if (!may_double || !model_.body().forces().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
     if (!may_double || share > 1) {
@@ -294,8 +295,8 @@ PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& r
   result.length = halves.length;
 }
 
-/// Throws the failure of a step that cannot be shorter: the failure of the method, or else a
-/// NumericalFailure, because the error exceeds the tolerance.
+/// Throws the failure of a step that cannot be shorter: the failure of the method if the method fails again,
+/// otherwise a NumericalFailure, because the error exceeds the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   integrate();
   std::ostringstream message;
@@ -305,8 +306,8 @@ PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   throw NumericalFailure(message.str(), last_good_.time());
 }
 
-/// Returns whether joints that do not close after a step of h seconds close after shorter steps. Changes the
-/// state, which the caller restores.
+/// Returns whether shorter steps succeed after a step of h seconds in which joints contradict each other.
+/// Changes the state; the caller must restore it.
 PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   state_ = last_good_;
   try {
@@ -324,7 +325,8 @@ PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   return state_.q.allFinite() && state_.v.allFinite();
 }
 
-/// Stages 3 and 4. Returns the length of the step, s; with a tolerance it may end early, at an impact.
+/// Stages 3 and 4: advances the state. Returns the length of the step, s. With a tolerance the step may end
+/// early, at an impact.
 PLIANT_INLINE double Simulation::integrate() {
   StepContext step = context();
   if (contact_) return contact_->step(*integrator_, step, scale_.has_value());
@@ -332,8 +334,8 @@ PLIANT_INLINE double Simulation::integrate() {
   return state_.h;
 }
 
-/// Stages 2 to 4 and 6 of a step of fixed length: advances the state by h, with stops where joints switch and
-/// paths have kinks. The caller increments State::step.
+/// Stages 2 to 4 and 6 of a step of fixed length: advances the state by h seconds. The step is divided at the
+/// times at which joints switch or paths have kinks. The caller increments State::step.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
   if (times.empty() && model_.driven_joints().empty()) {
@@ -373,7 +375,8 @@ PLIANT_INLINE StepContext Simulation::context() {
   return {dynamics_, state_, work_, step_counters_};
 }
 
-/// Stage 2: engages and releases joints at a time, s. Times within the tolerance (s) are equal.
+/// Stage 2: engages and releases joints at time t, s. Times that differ by at most the tolerance (s) are
+/// equal.
 PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
   if (model_.switch_times().empty()) return;
   StepContext at(dynamics_, state_, work_, step_counters_, t, state_.h);
@@ -381,7 +384,7 @@ PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
 }
 
 /// Stage 6: applies the impulses at a kink, a time (s) at which the velocity of a prescribed path jumps.
-/// Times within the tolerance (s) are equal.
+/// Times that differ by at most the tolerance (s) are equal.
 PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   StepContext after(dynamics_, state_, work_, step_counters_, just_after(kink), state_.h);
   switching_.follow_paths(after, kink, tolerance);
@@ -395,7 +398,8 @@ PLIANT_INLINE void Simulation::end_step() {
   record_without_inertia();
 }
 
-/// Restores the last good state and throws. where: the number that is not finite.
+/// Restores the state before the step and throws NumericalFailure, or UnsatisfiableModel if a conflict of
+/// joints is predicted. where: name of the number that is not finite.
 PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
   const State before = last_good_;
   std::ostringstream message;
@@ -410,7 +414,7 @@ PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
   throw NumericalFailure(message.str(), before.time());
 }
 
-/// Records the velocities that had no inertia in the step.
+/// Records the velocities without inertia in the last evaluation of the step.
 PLIANT_INLINE void Simulation::record_without_inertia() {
   for (std::size_t i = 0; i < work_.without_inertia.size(); ++i) {
     if (work_.without_inertia[i] == 0) continue;

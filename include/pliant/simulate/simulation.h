@@ -1,4 +1,4 @@
-// Simulation: a model, its state, and the method that steps it. simulation-inl.h lists the stages of a step.
+// Simulation: a model, its state and a method of integration. simulation-inl.h lists the stages of a step.
 #pragma once
 
 #include <memory>
@@ -23,31 +23,35 @@ class ContactStepping;  // contact/contact_stepping.h
 class Simulation {
  public:
   /// Prepares the body, which must outlive the simulation, and starts at time 0. Parts are assembled if
-  /// Stabilization::assemble_first is set. Joints with a small gap become closed, and impulses make the
-  /// velocities agree with them. integrator: the name of a method, or kAutomatic. threads: number of threads.
-  /// tolerance: largest error of a step (method/error_scale.h), which then determines the length of the
-  /// steps. With tolerance 0 the caller gives the length of the steps. With kAutomatic, tolerance 0 means
-  /// kStandardTolerance. Throws std::invalid_argument for an invalid model, method or tolerance,
-  /// UnsatisfiableModel if joints contradict each other, and NumericalFailure.
+  /// Stabilization::assemble_first is set. Joints with a small gap become closed, and impulses change the
+  /// velocities so that these joints stay closed.
+  /// integrator: the name of a method, or kAutomatic. threads: number of threads. tolerance: largest error of
+  /// a step (method/error_scale.h); it determines the length of the steps. With tolerance 0 the caller gives
+  /// the length of the steps; with kAutomatic, tolerance 0 means kStandardTolerance. Throws
+  /// std::invalid_argument for an invalid model, method or tolerance, and for a tolerance with a method that
+  /// has no error estimate. Throws UnsatisfiableModel if joints contradict each other, and NumericalFailure
+  /// if the initial state cannot be evaluated or projected.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
   Simulation(const Simulation&) = delete;  // dynamics_ refers to model_
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by h seconds (> 0 and finite). Without a tolerance the advance is one step, with stops where
-  /// joints begin or stop acting and where prescribed paths have kinks. With a tolerance the advance takes as
-  /// many steps as the tolerance needs. Throws NumericalFailure, UnsatisfiableModel and
-  /// std::invalid_argument; the state is then the one before the failed step.
+  /// Advances by h seconds (> 0 and finite). Without a tolerance the advance is one step, which is divided at
+  /// the times at which joints engage or are released, or prescribed paths have kinks. With a tolerance the
+  /// advance consists of as many steps as the tolerance requires. Throws std::invalid_argument for another h,
+  /// and NumericalFailure or UnsatisfiableModel if a step fails; the state is then that before the failed
+  /// step.
   void step(double h);
-  /// Advances by one step of the length that the tolerance allows. The step ends at the time `until` (s,
-  /// later than now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
+  /// Advances by one step of the length that the tolerance allows. The step ends at the time `until` (s) at
+  /// the latest. Throws std::invalid_argument unless `until` is finite and later than time(),
+  /// std::logic_error without a tolerance, and the errors of step() if the step fails.
   void step_up_to(double until);
 
   const Model& model() const { return model_; }
   const Dynamics& dynamics() const { return dynamics_; }
   const Integrator& integrator() const { return *integrator_; }
-  /// Returns the choice of kAutomatic with its reason; empty for a named method.
+  /// Returns the choice of kAutomatic with its reason; both texts are empty for a named method.
   const IntegratorChoice& choice() const { return choice_; }
   /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
@@ -64,18 +68,18 @@ class Simulation {
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }
 
-  /// Returns the report of the assembly before time 0, if the body asked for it.
+  /// Returns the report of the assembly before time 0; a default report unless Stabilization::assemble_first.
   const AssemblyReport& assembly() const { return assembly_; }
-  /// Returns the contacts (contact/contact_stepping.h); nullptr if nothing can touch.
+  /// Returns the contacts (contact/contact_stepping.h); nullptr if contact is not active in the body.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// Returns the impulses of joints at the times when joints engaged and at kinks of prescribed paths, in the
-  /// order of time and without those that are rounding.
+  /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
+  /// the order of time. Impulses as small as rounding errors are omitted.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
   /// Returns the numbers of evaluations by kind (part/counters.h), summed over parts.
   Counters counters() const;
-  /// Returns the names of the parameters ("part.parameter") that had no inertia at some step and were fixed
-  /// in that step, and of such velocities of frames ("part.omega.x").
+  /// Returns the names of the parameters ("part.parameter") and of the velocities of frames ("part.omega.x")
+  /// that had no inertia in at least one step and were fixed in that step.
   std::set<std::string> parameters_without_inertia() const;
 
  private:
@@ -104,24 +108,27 @@ class Simulation {
   std::unique_ptr<Integrator> integrator_;
   std::optional<ErrorScale> scale_;  ///< only with a tolerance
   IntegratorChoice choice_;
-  std::unique_ptr<ContactStepping> contact_;  ///< nullptr if nothing can touch
+  std::unique_ptr<ContactStepping> contact_;  ///< nullptr if contact is not active
   State state_, last_good_, attempt_start_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
-  std::vector<bool> without_inertia_;  ///< velocities that had no inertia at some step
+  std::vector<bool> without_inertia_;  ///< whether each velocity had no inertia in at least one step
   double start_energy_ = 0;
 };
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
-/// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs,
-/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms with constant gains while
-/// a joint is open or not projected, a rotation of half a radian per step, and one radian of phase of modes
-/// if contact is active. Parts that springs connect are bounded together; in large groups they are bounded
-/// separately, with twice the stiffness of each spring to another moving part. The bounds of elasticity
-/// ignore joints, which only reduce its frequencies. Both simplifications can only make the result smaller.
-/// If the method integrates local elasticity implicitly, only springs, drag and rotation bound the parts that
-/// deform locally.
+/// nothing limits the step. The step is limited by
+///   - the linearised elasticity and damping of global parameters and springs,
+///   - local elasticity,
+///   - the fastest oscillation of parts on joints,
+///   - Baumgarte's terms with constant gains, if a joint is open or not projected,
+///   - a rotation of half a radian per step,
+///   - one radian of phase per step of each mode, if contact is active.
+/// Parts that springs connect are limited together. Parts of large groups are limited separately, with twice
+/// the stiffness of each spring to another moving part. The limits of elasticity ignore joints, which only
+/// reduce the frequencies. Both simplifications can only make the result smaller. If the method integrates
+/// local elasticity implicitly, only springs, drag and rotation limit the parts that deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
-// Function bodies of stable_step.h: M, K and D of each group of parts that springs connect, in
-// mass-normalised coordinates, and the largest step for which the growth of the method is at most 1.
+// Function bodies of stable_step.h: M, K and D of each group of parts that springs connect, and the largest
+// step for which the growth of the method is at most 1. The growth is the largest factor by which one step
+// multiplies a solution of M x_ddot + D x_dot + K x = 0.
 #pragma once
 
 #include <pliant/simulate/stable_step.h>
@@ -21,16 +22,16 @@ namespace pliant {
 
 namespace stability {
 
-/// In groups of parts with more velocities than this, the step is bounded for each part separately.
+/// If a group of parts has more velocities than this, each part limits the step separately.
 inline constexpr int kMaxGroupVelocities = 120;
 /// Largest rotation of a part in a step, rad.
 inline constexpr double kMaxRotation = 0.5;
-/// Largest change of phase of a mode in a step, rad. In longer steps, impacts move the mode like a free body
-/// and add energy.
+/// Largest change of phase of a mode in a step, rad. In longer steps, impacts add energy, because they act on
+/// a mode as on a free body.
 inline constexpr double kMaxPhase = 1;
 
-/// Returns L of Eq. (9) at a port, an attachment point: the world velocity (m/s) of the point is L v_r with
-/// v_r = (R^T c_dot, omega, q_s_dot). Size: 3 x (6 + n_s).
+/// Returns L of Eq. (9) at a port, an attachment point of a part: the velocity of the port in the world frame
+/// is L v with v = (R^T c_dot, omega, q_s_dot), m/s. Size: 3 x (6 + n_s), n_s: number of dynamic parameters.
 inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
   const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
   MatX<double> L(3, 6 + m.n_s);
@@ -45,14 +46,15 @@ struct LinearSystem {
   MatX<double> M, K, D;
 };
 
-/// Returns the columns of A with the numbers `which`.
+/// Returns the columns of A with the given numbers.
 inline MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
   MatX<double> columns(A.rows(), static_cast<Eigen::Index>(which.size()));
   for (std::size_t i = 0; i < which.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
   return columns;
 }
 
-/// Returns the largest step (s) for which a method keeps the solutions of a linear system bounded.
+/// Returns the largest step (s) for which a method keeps the solutions of a linear system bounded: infinite
+/// without stiffness and damping, 0 if the system is not finite.
 inline double stable_step_of(const Integrator& method, const LinearSystem& system) {
   // Coordinates without inertia are fixed: remove them.
   std::vector<Eigen::Index> kept;
@@ -92,11 +94,11 @@ inline double stable_step_of(const Integrator& method, const LinearSystem& syste
   return low;
 }
 
-/// Returns bounds of K (1/s^2) and D (1/s) of a part that deforms locally, in mass-normalised coordinates:
-/// the sum of the bounds of its local elasticity, its global parameters, its drag and the springs at its
-/// attachment points. implicit: the method integrates elasticity implicitly, and only drag and springs are
-/// included. The local elasticity is not included either if the modes of the part oscillate freely and no
-/// spring pulls the part, because methods then integrate the modes exactly.
+/// Returns upper bounds of K (1/s^2) and D (1/s) of part i, which deforms locally, in mass-normalised
+/// coordinates. They are sums over its local elasticity, its global parameters, its drag and the springs at
+/// its ports. implicit: whether the method integrates local elasticity implicitly; then only drag and springs
+/// are included. The local elasticity is also omitted if the modes of the part oscillate freely and no spring
+/// is attached to the part, because methods then integrate the modes exactly.
 inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
                                              const PartWorkspace<double>& w, bool implicit) {
   const PartModel& m = model.parts()[i];
@@ -120,7 +122,7 @@ inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
     for (const PortRef& ref : {s.a, s.b}) {
       if (ref.part != static_cast<int>(i)) continue;
       const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
-      // The other end may move by an equal amount in the opposite direction.
+      // The factor 2: the other end may move by an equal amount in the opposite direction.
       bound.K += 2 * s.spring->stiffness * mobility;
       bound.D += 2 * s.spring->damping * mobility;
     }
@@ -139,9 +141,10 @@ inline bool moves(const Model& model, int part) {
   return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0;
 }
 
-/// Groups of moving parts that springs connect, and the springs at each part.
+/// Groups of moving parts that springs connect, and the springs at each part. A part without springs to other
+/// moving parts is a group of its own.
 struct SpringGroups {
-  std::vector<std::vector<std::size_t>> members;     ///< parts of each group; empty entries are not groups
+  std::vector<std::vector<std::size_t>> members;     ///< parts of each group; empty entries are unused
   std::vector<std::vector<std::size_t>> springs_at;  ///< springs at each part
 
   explicit SpringGroups(const Model& model)
@@ -165,7 +168,7 @@ struct SpringGroups {
   }
 };
 
-/// The search for the smallest of all bounds of the step.
+/// The search for the smallest of all limits of the step.
 class StableStepSearch {
  public:
   explicit StableStepSearch(const Simulation& simulation)
@@ -201,8 +204,8 @@ class StableStepSearch {
     return stable_step_of(simulation_.integrator(), {matrix(1), matrix(stiffness), matrix(damping)});
   }
 
-  /// Limits the step by Baumgarte's terms. They act on open joints, and on closed joints without projection.
-  /// Gains that follow the step length are stable for any step, so they give no limit.
+  /// Limits the step by Baumgarte's terms, which act on open joints, and on closed joints without projection.
+  /// Gains that depend on the step length are stable for any step, so that they give no limit.
   void limit_by_stabilization() {
     const JointPolicy& policy = simulation_.dynamics().joint_policy();
     const Stabilization& rule = model_.body().stabilization;
@@ -239,13 +242,14 @@ class StableStepSearch {
       limit_by(stable_step_of(simulation_.integrator(), system_of(group, 1)), limit_of_group(model_, group));
       return;
     }
-    // For one part, a spring acts with up to twice its stiffness.
+    // If the other end of a spring moves in the opposite direction, the spring acts on a part with up to
+    // twice its stiffness.
     for (const std::size_t i : group)
       limit_by(stable_step_of(simulation_.integrator(), system_of({i}, 2)), limit_of_group(model_, {i}));
   }
 
-  /// Assembles the system of some parts and their springs. open_weight: factor of springs with one end on a
-  /// moving part outside these parts.
+  /// Returns the system of some parts and their springs. open_weight: factor of the stiffness and damping of
+  /// springs that have one end on a moving part outside these parts.
   LinearSystem system_of(const std::vector<std::size_t>& parts, double open_weight) {
     int size = 0;
     for (const std::size_t i : parts) {
@@ -279,8 +283,8 @@ class StableStepSearch {
     }
     system.D.block(row, row, n_v, n_v) += part.drag() * M;
   }
-  /// Adds a spring that resists every change of x_b - x_a, the vector between its ends. It is at least as
-  /// stiff as an axial spring in every direction.
+  /// Adds a spring that resists every change of x_b - x_a, the vector between its ends. In every direction
+  /// this spring is at least as stiff as the axial spring of the model.
   void add_spring(const SpringModel& s, double open_weight, LinearSystem& system) const {
     const auto is_outside = [&](int part) {
       return moves(model_, part) && first_[static_cast<std::size_t>(part)] < 0;
@@ -303,7 +307,7 @@ class StableStepSearch {
   const State& state_;
   const bool implicit_;  // whether local elasticity is integrated implicitly
   const SpringGroups groups_;
-  std::vector<int> first_;  // first row of each part in the system that is being assembled; -1: not there
+  std::vector<int> first_;  // first row of each part in the system that is being assembled; -1: not included
   Workspace<double> work_;
   StableStep smallest_{std::numeric_limits<double>::infinity(), {}, {}};
 };

@@ -8,9 +8,9 @@
 namespace pliant {
 
 struct StableStep {
-  double step;            ///< see largest_stable_step(), s
+  double step;            ///< the result of largest_stable_step(), s
   std::string limit;      ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
-  std::string uncounted;  ///< causes that are not included and may give a smaller step; empty: none
+  std::string uncounted;  ///< causes that are not included and may limit the step more; empty: none
 };
 /// Returns the largest stable step at the current state, with its cause.
 StableStep stable_step(const Simulation& simulation);

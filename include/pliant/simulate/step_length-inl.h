@@ -12,10 +12,10 @@
 namespace pliant {
 
 namespace step_length {
-/// Safety factor, and smallest factor from one step to the next.
+/// Safety factor, and smallest ratio of a step to the previous one.
 inline constexpr double kSafety = 0.8, kMinFactor = 0.2;
-/// Safety factor for errors of order 0. Such an error is the ratio of the step length to the largest length
-/// with contacts; it is known, not estimated. The next length may be below kMinFactor times the last one.
+/// Safety factor for errors of order 0. An error of order 0 is the known ratio of the step length to the
+/// largest length with contacts. The next length may then be below kMinFactor times the last length.
 inline constexpr double kExactSafety = 0.99;
 /// Exponent of the previous error in the proportional-integral controller, times order + 1.
 inline constexpr double kIntegral = 0.2;
@@ -49,14 +49,14 @@ PLIANT_INLINE double first_step(StepContext& step, const ErrorScale& scale, int 
   const Dynamics& dynamics = step.dynamics;
   const State& state = step.state;
   Workspace<double>& work = step.work;
-  // Length of a step of Euler's method that moves by 0.01 in the units of the scale.
+  // h: length of a step of Euler's method in which the state changes by 0.01 in the units of the scale.
   dynamics.accelerations(state.time(), state.q, state.v, state, work);
   VecX<double> q_dot, q_dot_end;
   dynamics.coordinate_rates(state.q, state.v, q_dot);
   const VecX<double> v_dot = work.v_dot;
   const double tolerance = scale.tolerance(), rate = tolerance * scale.norm(q_dot, v_dot, state.v);
   double h = rate > 0 ? 0.01 / rate : 1e-3;
-  // Change of the rates during this step.
+  // Change of the rates during this step, divided by h.
   dynamics.accelerations(state.time() + h, state.q + h * q_dot, state.v + h * v_dot, state, work);
   dynamics.coordinate_rates(state.q + h * q_dot, state.v + h * v_dot, q_dot_end);
   step.counters.evaluations += 2;

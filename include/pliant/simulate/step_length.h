@@ -18,27 +18,30 @@ struct StepGrowth {
 };
 /// Smallest growth that is worth a new factorisation, for methods whose factors depend on the step length.
 inline constexpr double kMinRareGrowth = 2;
-/// Returns the limits for a method: growth by 2 to 40 if it reuses factors, which it does for parts whose
-/// nodes have a constant stiffness and are integrated implicitly; otherwise the defaults.
+/// Returns the limits for a method and a model: growth by a factor from 2 to 40 if the method reuses factors,
+/// otherwise the defaults. A method reuses factors if it integrates local elasticity implicitly and the model
+/// has a part whose nodes have a constant stiffness.
 StepGrowth growth_of(const Integrator& method, const Model& model);
 
-/// Returns the length (s) of the step after a step of length h (s) with this error, in tolerances. order: of
-/// the error estimate. last_error: of the step before, 0 if there was none. rejected: whether this step is
-/// rejected, or repeats a rejected one. max_growth: largest growth factor.
+/// Returns the length (s) of the step after a step of length h (s). error: error of this step divided by the
+/// tolerance; if it is not finite, the result is 0.2 h. last_error: error of the previous step; 0 if there
+/// was none. order: order of the error estimate. rejected: whether this step is rejected, or repeats a
+/// rejected step; the length then does not grow. max_growth: largest ratio of the result to h.
 double next_step(double h, double error, double last_error, int order, bool rejected, double max_growth);
 
-/// Returns the length of a first step at the state, s. order: of the error estimate of the method. step.work
-/// is scratch storage; its contents are ignored.
+/// Returns the length of a first step at the state, s. order: order of the error estimate of the method.
+/// step.work is scratch storage; its contents are ignored.
 double first_step(StepContext& step, const ErrorScale& scale, int order);
 
-/// Takes a step from a state, with the length in the state, which ends at the time `end` (s) at the latest.
-/// Accepts the step if its error is at most 1 tolerance; otherwise rejects it, and repeats it shorter.
-/// attempt(): advances the state by its h and returns the StepError. Returns false if the step would have to
-/// be as short as min_length (s).
+/// Advances a state by one step of length state.h. The step ends at the time `end` (s) at the latest. If the
+/// error of the step is at most 1 (in tolerances), accepts the step and stores the next length in state.h;
+/// otherwise rejects the step and repeats it shorter. attempt() advances the state by state.h and returns the
+/// StepError. Returns true if a step was accepted, and false if the length would be min_length (s) or less;
+/// the state is then at the start of the step.
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
                           StepCounters& counters, Attempt&& attempt) {
-  constexpr double kNearEnd = 0.99;  // a step longer than this share of the time left until `end` ends there
+  constexpr double kNearEnd = 0.99;  // a step longer than this share of `end` - now ends at `end`
   const State start = state;
   const double now = start.time();
   bool rejected = false;
@@ -61,7 +64,7 @@ bool take_controlled_step(State& state, double end, double min_length, StepGrowt
       state.start = reaches_end && !cut ? end : now + length;
       state.h = cut           ? h
                 : reaches_end ? std::max(h, next)
-                              : next;  // an event that cut the step does not change h
+                              : next;  // an impact that cut the step does not change h
       state.error = error;
       return true;
     }

@@ -1,4 +1,4 @@
-// Forces, energy and stiffness of bending by mid-edge normals.
+// Function bodies of bending.h.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace detail {
 
 /// Number of batches that one task of the thread pool evaluates.
 inline constexpr int kBendingRange = 256;
-/// Rest angles up to this, rad, are rounding errors of a flat mesh.
+/// Rest angles up to this value, rad, are rounding errors of a flat mesh.
 inline constexpr double kFlatHinge = 1e-12;
 
 /// Returns Q of a triangle (bending.h), N m. e: its edges, m.
@@ -136,8 +136,8 @@ std::vector<double> MidEdgeBending<Hinges>::rest_angles(const ShellMesh& mesh) c
   return angles;
 }
 
-/// Returns the phi (rad) that minimise 1/2 sum alpha Q alpha for the angles theta of the hinges. They define
-/// the normals of the rest shape.
+/// Returns the angles phi (rad) that minimise 1/2 sum alpha Q alpha for the angles theta of the hinges. These
+/// phi define the normals of the rest shape.
 template <class Hinges>
 VecX<double> MidEdgeBending<Hinges>::rest_rotations(const double* angles) const {
   const PerEdge none{0.0, 0.0, 0.0};
@@ -374,7 +374,7 @@ void MidEdgeBending<Hinges>::add_derivative(const Coordinates& x, const Coordina
                                             Buffer& buffer, ThreadPool* pool) const {
   add_viscous_force(x, dx, f, buffer, pool);
   if constexpr (Hinges::kOf == Of::position) {
-    // Geometric stiffness: the moments are constant, and the gradients of angles and strains change along dx.
+    // Geometric stiffness: the change of the gradients of angles and strains along dx, with constant moments.
     const Scratch now = scratch(buffer);
     compute_state(x, now, pool);
     hinge_batches_.add(f, now.corners, pool, [&](int b) {

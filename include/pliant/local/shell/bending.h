@@ -1,7 +1,7 @@
 // Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
-// 2006). Each edge has a normal at its middle, which can rotate about the edge. Its rotation phi from the
-// mean of the normals of both triangles is an own coordinate of the energy (nodal_energy.h). Relative to the
-// two triangles the normal has rotated since rest by
+// 2006). Each edge has a normal at its middle, which can rotate about the edge. The angle phi (rad) from the
+// mean of the normals of both triangles to this normal is an own coordinate of the energy (nodal_energy.h).
+// Relative to the two triangles the normal has rotated since rest by
 //   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),
 // with dtheta the change of the angle between the triangles (hinge.h). The curvature of a triangle is
 // constant,
@@ -9,11 +9,11 @@
 // and the energy is
 //   E = 1/2 sum over triangles of alpha Q alpha,
 //   Q_kl = D/A [(1 - nu)(e_k . e_l)^2/(|e_k||e_l|) + nu |e_k||e_l|]   (D: sheet.h).
-// On a curved rest shape alpha also has a term C q of the triangle's own strain q (edge_strain.h), which
-// makes kappa the bending strain of Koiter and Sanders. The element converges on any mesh; an energy of
-// dtheta alone does not. phi has the rotary inertia rho t^3/12 for each unit of area. This inertia adds
-// nothing to the momentum of the part, and rigid motion does not change phi. Boundary edges are free of
-// moments.
+// On a curved rest shape alpha also has a term C q of the strain q of the triangle (edge_strain.h). With this
+// term kappa is the bending strain of Koiter and Sanders. The element converges on any mesh; an energy of
+// dtheta alone does not. phi has the rotary inertia rho t^3/12 for each unit of area, with the density rho
+// and the thickness t. This inertia does not contribute to the momentum of the part, and rigid motion does
+// not change phi. Boundary edges are free of moments.
 #pragma once
 
 #include <array>
@@ -25,13 +25,13 @@
 
 namespace pliant {
 
-/// Hinges: LinearHinges (energy of displacements, dtheta linear in them) or FoldingHinges (energy of
-/// positions; each angle may change by less than pi from rest).
+/// Hinges: LinearHinges (energy of displacements, dtheta is linear in the displacements) or FoldingHinges
+/// (energy of positions; each angle may change by less than pi from rest).
 template <class Hinges>
 class MidEdgeBending final : public NodalEnergy {
  public:
-  /// area_density: mass of the shell for each unit of area, kg/m^2. Throws std::invalid_argument unless it is
-  /// positive and finite. Throws the errors of Sheet::check and shell_edges too.
+  /// area_density: mass of the shell for each unit of area, kg/m^2. Throws std::invalid_argument unless
+  /// area_density is positive and finite. Also throws the errors of Sheet::check and shell_edges.
   MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet, double area_density);
 
   Of of() const override { return Hinges::kOf; }
@@ -68,7 +68,7 @@ class MidEdgeBending final : public NodalEnergy {
   int n_angles() const { return Pack::kLanes * hinge_batches_.n_batches() + 1; }
   std::size_t n_moments() const { return 3 * Pack::kLanes * triangles_.size(); }
 
-  // The constructor calls these four functions. They compute Triangles::C from the curvature at rest.
+  // The constructor computes Triangles::C from the curvature at rest with these four functions.
   void set_coupling(const ShellMesh& mesh);
   void set_coupling(const ShellMesh& mesh, int t, const double* angles, const double* phi);
   std::vector<double> rest_angles(const ShellMesh& mesh) const;

@@ -1,4 +1,4 @@
-// Strain tensors and stiffness of a triangle in terms of its edges.
+// Function bodies of edge_strain.h.
 #pragma once
 
 #include <cmath>

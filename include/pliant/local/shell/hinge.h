@@ -1,11 +1,11 @@
-// Angle of a hinge: two triangles that share the edge from a to b. Corner c is on the left of the edge, d on
-// its right:
+// Angle theta of a hinge. A hinge is two triangles that share the edge from a to b. Corner c is on the left
+// of the edge, corner d on its right:
 //   theta = atan2(e/|e| . (n x m), n . m),   e = b - a,  n = e x (c - a),  m = (d - a) x e.
-// theta is positive on a ridge. If c moves by z along the normal of its triangle, theta changes by -z/height,
-// where height is the distance of c from the edge; the same holds for d. The gradients at all four corners
-// sum to zero. With r_c the position of the foot of the height of c on the edge (0 at a, 1 at b), and r_d
-// that of d, the gradient at a is -(1 - r_c) times that at c minus (1 - r_d) times that at d. The gradient at
-// b has -r_c and -r_d as factors.
+// theta is positive on a ridge. If c or d moves by z along the normal of its triangle, theta changes by
+// -z/height, where height is the distance of the corner from the edge. Let g_a, g_b, g_c and g_d be the
+// gradients at the corners, and r_c and r_d the positions of the feet of c and d on the edge (0 at a, 1 at
+// b):
+//   g_a = -(1 - r_c) g_c - (1 - r_d) g_d,   g_b = -r_c g_c - r_d g_d.
 #pragma once
 
 #include <array>

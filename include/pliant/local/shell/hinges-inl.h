@@ -1,4 +1,4 @@
-// Linear and exact changes of hinge angles and triangle strains.
+// Function bodies of hinges.h.
 #pragma once
 
 #include <array>
@@ -35,8 +35,7 @@ PLIANT_INLINE std::array<Pack, 3> FoldingHinges::strain(int batch, const std::ar
 PLIANT_INLINE Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
   const math::SinCos<Pack>& rest = rest_[static_cast<std::size_t>(batch)];
   const math::SinCos<Pack> now = hinge_sin_cos(x);
-  // Sine and cosine of the change since rest: the result jumps only where a hinge is half a turn away from
-  // rest.
+  // Sine and cosine of the change since rest. The result jumps only where the change is half a turn.
   const Pack s = now.sin * rest.cos - now.cos * rest.sin, c = now.cos * rest.cos + now.sin * rest.sin;
   return {std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])};
 }

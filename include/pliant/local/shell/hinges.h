@@ -38,8 +38,8 @@ class LinearHinges {
   std::vector<Edges<Pack>> edges_;
 };
 
-/// Exact angles and strains at positions x, less those at rest. dtheta is between -pi and pi. Members as in
-/// LinearHinges, with x in place of d.
+/// Exact changes of angles and strains from rest to the positions x. dtheta is between -pi and pi. The
+/// members are those of LinearHinges, with x in place of d; edges() returns the current edges.
 class FoldingHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::position;

@@ -1,5 +1,4 @@
-// Forces, energy and stiffness of the linear membrane. add_force() evaluates -K q_d of Eq. (11), triangle by
-// triangle.
+// Function bodies of linear_membrane.h. add_force() evaluates -K q_d of Eq. (11), triangle by triangle.
 #pragma once
 
 #include <pliant/local/shell/linear_membrane.h>

@@ -1,5 +1,4 @@
-// Element matrices, forces and energy of the loaded membrane. add_force() evaluates -K q_d of Eq. (11),
-// triangle by triangle.
+// Function bodies of loaded_membrane.h. add_force() evaluates -K q_d of Eq. (11), triangle by triangle.
 #pragma once
 
 #include <cmath>
@@ -17,7 +16,7 @@ namespace pliant {
 namespace detail {
 
 /// Returns the triangles of a parameter mesh. Throws std::invalid_argument if a triangle refers to an unknown
-/// node, or if uv has not one column for each corner.
+/// node, or if uv does not have one column for each corner.
 inline const Eigen::Matrix3Xi& checked_parameter_triangles(const ParameterMesh& mesh) {
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k)

@@ -1,8 +1,8 @@
-// The loaded membrane (Terzopoulos & Metaxas 1991): the displacement d has an energy for its size and for its
-// variation,
-//   E = 1/2 int w1 |grad d|^2 + w0 |d|^2,
-// on linear triangles with area A,
-//   K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12   (lumped: w0 A delta_ij/3),
+// The loaded membrane (Terzopoulos & Metaxas 1991): the energy depends on the size of the displacement d and
+// on its variation,
+//   E = 1/2 int (w1 |grad d|^2 + w0 |d|^2).
+// On a linear triangle with area A and shape functions N_i,
+//   K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12   (lumped: w0 A delta_ij/3)
 // for each of the directions x, y and z. Two domains of integration are available:
 //   ParameterMesh   the parameters, du dv, as published; the material is stiffer near poles
 //   ShellMesh       the surface itself, with the cotangent formula for the gradient; poles have no influence
@@ -18,8 +18,8 @@ namespace pliant {
 
 /// Weights of the loaded membrane.
 struct Load {
-  /// Integration of w0 |d|^2: `consistent` is exact, `lumped` assigns a third of each triangle to each
-  /// corner.
+  /// Integration of w0 |d|^2: `consistent` is exact; `lumped` assigns a third of the area of each triangle to
+  /// each of its corners.
   enum class Size { consistent, lumped };
   double w0;  ///< weight of the size |d|^2: N/m on parameters, N/m^3 on the surface
   double w1;  ///< weight of the variation |grad d|^2: N/m
@@ -27,8 +27,8 @@ struct Load {
 };
 
 /// A triangle mesh of the parameter rectangle. A node at a pole has a different v in each triangle, so that
-/// (u, v) are stored for each corner. Each cell of the (u, v) grid has two triangles; in a cell at a pole,
-/// one of them contains the pole twice.
+/// (u, v) are stored for each corner. Each cell of the (u, v) grid has two triangles. In a cell at a pole,
+/// one of the two triangles has the pole at two of its corners.
 struct ParameterMesh {
   Eigen::Index n_nodes;
   Eigen::Matrix3Xi triangles;

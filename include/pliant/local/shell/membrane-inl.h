@@ -1,4 +1,4 @@
-// Forces, energy and stiffness of membranes for large deformation.
+// Function bodies of membrane.h.
 #pragma once
 
 #include <pliant/local/shell/membrane.h>
@@ -16,7 +16,7 @@ Membrane<Law>::Membrane(const ShellMesh& mesh, const Sheet& sheet)
     Batch& triangles = triangles_[static_cast<std::size_t>(b)];
     for (int lane = 0; lane < Pack::kLanes; ++lane)
       triangles.law.set(lane, edges_of(mesh, batches_.element(b, lane)), sheet);
-    // The rest values come from the operations of a later evaluation, so that q is exactly 0 at rest.
+    // strain() computes the rest values and also all later values, so that q is exactly 0 at rest.
     triangles.rest = {0.0, 0.0, 0.0};
     triangles.rest = triangles.strain(edges_of(batches_.corners(X, b)));
   }
@@ -68,8 +68,8 @@ void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b)), e_dot = edges_of(batches_.corners(x_dot, b));
-    // The tensions are those of the law linearised at rest, applied to the rates q_dot. Its matrix is
-    // constant and positive semi-definite.
+    // The tensions are those of the law linearised at rest, applied to the rates q_dot. The matrix of the
+    // linearised law is constant and positive semi-definite.
     return corner_forces<Pack>(batch(b).law.linear_tension(strain_change(e, e_dot)), e);
   });
 }

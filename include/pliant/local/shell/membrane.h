@@ -3,7 +3,6 @@
 // (edge_strain.h):
 //   q_k = (|e_k|^2 - |e_k|_rest^2)/2,   dq_k = e_k . de_k,
 //   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k.
-// Derivatives are exact.
 #pragma once
 
 #include <array>

@@ -1,10 +1,10 @@
-// Laws of membranes for large deformation: the energy W(q) of a triangle, J, with q from its edges
-// (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and rest
-// thickness t,
+// Laws of membranes for large deformation: the energy W(q) of a triangle, J. q describes the change of its
+// edges (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and
+// rest thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
 //   neo-Hookean            W = A t mu/2 [tr C - 2 + (D^-k - 1)/k],  D = det C,  k = nu/(1 - nu).
-// The second law is the compressible material of Blatz & Ko (1962) in plane stress, whose thickness becomes
-// D^(-k/2) t. k = 1 is incompressible rubber; for k -> 0 the last term becomes -log D.
+// The second law is the compressible material of Blatz & Ko (1962) in plane stress. The thickness becomes
+// D^(-k/2) t. k = 1 is incompressible rubber. For k -> 0 the term (D^-k - 1)/k becomes -log D.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace pliant {
 
-/// Members of a law: its name, and `Triangles`, the constants of four triangles with W and its derivatives.
-/// set() computes the constants of one triangle with rest edges e. tension() returns tau = dW/dq, N/m;
-/// linear_tension() returns its linearisation at rest. T is Pack or a dual number.
+/// Members of a law: its name, and `Triangles`, the constants of four triangles with functions of W. set()
+/// computes the constants of one triangle with rest edges e. energy() returns W. tension() returns tau =
+/// dW/dq, N/m; linear_tension() returns the linearisation of tau at rest. T is Pack or a dual number.
 struct StVenantKirchhoffSheet {
   static constexpr const char* name = "st_venant_kirchhoff";
 

@@ -1,4 +1,4 @@
-// Volume, forces and stiffness of pressure in a closed shell; the laws of constant pressure and of a gas.
+// Function bodies of pressure.h.
 #pragma once
 
 #include <cmath>
@@ -114,8 +114,8 @@ PLIANT_INLINE void Pressure::add_derivative(const Coordinates& x, const Coordina
   });
 }
 
-/// d2V/dx2 couples only the ends a and b of an edge: d2V/(dx_a dx_b) = -[x_c - x_d]x/6, with the opposite
-/// nodes c and d.
+/// d2V/dx2 couples only the ends a and b of each edge: d2V/(dx_a dx_b) = -skew(x_c - x_d)/6, with the
+/// opposite nodes c and d.
 template <class Visit>
 void Pressure::each_element(const Coordinates& x, Visit&& visit) const {
   const double slope = law(volume(x)).slope;

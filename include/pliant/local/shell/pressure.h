@@ -42,8 +42,8 @@ class Pressure : public NodalEnergy {
 
  private:
   virtual Law law(double V) const = 0;
-  /// Returns the sum of f(batch) over the triangles, in the order of the batches. parts: scratch storage of
-  /// one number for each batch.
+  /// Returns the sum of f(batch) over the triangles, in the order of the batches. parts: scratch storage for
+  /// one number of each batch.
   template <class F>
   double sum(double* parts, ThreadPool* pool, F&& f) const;
   double volume(const Coordinates& x, double* parts, ThreadPool* pool) const;

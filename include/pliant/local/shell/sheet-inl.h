@@ -1,4 +1,4 @@
-// Check of the constants of a sheet.
+// Function bodies of sheet.h.
 #pragma once
 
 #include <cmath>

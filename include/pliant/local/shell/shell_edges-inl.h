@@ -1,4 +1,4 @@
-// Search for the edges of a triangle mesh.
+// Function bodies of shell_edges.h.
 #pragma once
 
 #include <algorithm>

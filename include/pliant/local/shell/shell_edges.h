@@ -7,12 +7,12 @@
 
 namespace pliant {
 
-/// An edge from node a to node b. The left triangle contains it in this direction, the right triangle from b
+/// An edge from node a to node b. The left triangle contains the edge from a to b, the right triangle from b
 /// to a.
 struct ShellEdge {
   int a, b;
-  int left, left_corner;    ///< triangle, and its corner opposite the edge
-  int right, right_corner;  ///< both -1 on the boundary of the mesh
+  int left, left_corner;    ///< left triangle, and number (0 to 2) of its corner opposite the edge
+  int right, right_corner;  ///< right triangle and its corner; both -1 on the boundary of the mesh
   /// Returns whether the edge has two triangles.
   bool inside() const { return right >= 0; }
 };

@@ -1,4 +1,4 @@
-// Checks of a triangulated shell.
+// Function bodies of shell_mesh.h.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace pliant {
 
 namespace detail {
-/// A triangle is refused if twice its area is at most this fraction of the square of its longest edge: the
-/// area is then a rounding error.
+/// A triangle has no area if twice its area is at most this fraction of the square of its longest edge. The
+/// computed area is then a rounding error.
 inline constexpr double kShellFlatTriangle = 1e-12;
 }  // namespace detail
 

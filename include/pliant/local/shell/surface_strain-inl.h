@@ -1,4 +1,4 @@
-// Green's strain of the triangles of a surface, averaged at its vertices.
+// Function bodies of surface_strain.h.
 #pragma once
 
 #include <array>

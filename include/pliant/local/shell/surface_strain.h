@@ -1,4 +1,4 @@
-// Stretch of a triangulated surface for pictures: the largest principal value of Green's strain
+// Strain of a triangulated surface for pictures: the largest principal value of Green's strain
 //   G = (F^T F - 1)/2
 // from rest to the current positions. A value of 0.1 is an elongation of 9.5 %. The value at a vertex is the
 // mean over its triangles, weighted by their areas at rest.

@@ -1,4 +1,4 @@
-// Forces, energy and stiffness of linear elasticity with averaged dilatation.
+// Function bodies of averaged_dilatation.h.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 // Linear elasticity with averaged dilatation, which prevents nearly incompressible solids from locking. The
 // dilatation div d enters the energy through its means theta_c over patches c of volume V_c,
 //   E = int mu eps:eps + lambda/2 sum_c V_c theta_c^2,   V_c theta_c = int over c of div d.
-// 4 nodes: a patch is a node with a quarter of each adjacent element (Bonet & Burton 1998). 10 and 15 nodes:
-// a patch is an element. By Jensen's inequality E is at most the energy without averages.
+// For elements with 4 nodes, a patch is a node with a quarter of each adjacent element (Bonet & Burton 1998).
+// For 10 and 15 nodes, a patch is an element. By Jensen's inequality, E is at most the energy without
+// averages.
 #pragma once
 
 #include <pliant/local/nodal_energy.h>
@@ -17,8 +18,8 @@ template <class Element>
 class AveragedLinearSolid final : public NodalEnergy {
  public:
   static constexpr int N = Element::n_nodes;
-  /// rest, elements: as in SolidEnergy. Throws the errors of SolidEnergy, and std::invalid_argument for nu_P
-  /// < 0: averages would increase E there, and frequency_bound would not hold.
+  /// rest, elements: as in SolidEnergy. Throws the errors of SolidEnergy, and std::invalid_argument for
+  /// nu_P < 0, because averages would then increase E, and frequency_bound would not be a bound.
   AveragedLinearSolid(const Nodes& rest, const Eigen::MatrixXi& elements, const Elasticity& material);
 
   Of of() const override { return Of::displacement; }
@@ -29,7 +30,7 @@ class AveragedLinearSolid final : public NodalEnergy {
     add_force(dx, f, buffer, pool);
   }
   void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  /// Returns the bound of the solid without averages, which is at least as large.
+  /// Returns the bound of the solid without averages, which is also a bound of this solid.
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:

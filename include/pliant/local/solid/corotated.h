@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-/// Returns the rotation nearest to F. Throws InvertedElement unless det F > 0, and if the iteration does not
-/// converge because F is almost singular.
+/// Returns the rotation nearest to F. Throws InvertedElement if det F > 0 is not true, or if the iteration
+/// does not converge because F is almost singular.
 template <class T>
 Mat3<T> nearest_rotation(const Mat3<T>& F) {
   using std::sqrt;

@@ -1,8 +1,8 @@
 // Elements with K corners, in batches of four: one element in each lane of a Pack. Each element writes the
-// forces at its corners to its own section of a buffer; then each node sums its corners in the order of the
-// elements. No two threads write the same number, and the sums do not depend on the number of threads. The
-// corner buffer is [batch][corner][x, y, z][lane]. Free lanes of the last batch repeat the last element; they
-// are written but not read.
+// forces at its corners to its own section of a buffer. Then the forces of each node are summed in the order
+// of the elements, so that the sums do not depend on the number of threads. The order of the buffer is
+// [batch][corner][x, y, z][lane]. Free lanes of the last batch repeat the last element; their numbers in the
+// buffer are not used.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class ElementBatches {
   using Elements = Eigen::Matrix<int, K, Eigen::Dynamic>;
   using Corners = std::array<Vec3<Pack>, K>;
 
-  /// elements: node numbers below n_nodes, one column for each element. They are not checked.
+  /// elements: node numbers below n_nodes, one column for each element. The numbers are not checked.
   ElementBatches(const Elements& elements, Eigen::Index n_nodes);
 
   int n_elements() const { return n_elements_; }
@@ -55,7 +55,7 @@ class ElementBatches {
         index[static_cast<std::size_t>(3 * k + i)] = node(batch, k, lane) + i * n_nodes_;
     return index;
   }
-  /// Length of the corner buffer.
+  /// Returns the length of the buffer of add().
   std::size_t buffer_size() const { return nodes_.size() * static_cast<std::size_t>(kBatchSize); }
 
   /// Reads the vectors at the corners of a batch from local coordinates (nodes.h).

@@ -1,8 +1,8 @@
 // Node numbers of elements with N nodes, and parallel sums over the corners that share a node. Elements are
 // stored in packs of four, one element in each lane, and packs in blocks of fixed size. Each block sums the
 // terms of its elements for each of its own nodes, in the order of the elements. Then each node sums its
-// blocks. The order of every sum is fixed, so that results do not depend on the number of threads; little
-// memory is read or written.
+// blocks. The order of every sum is fixed, so that results do not depend on the number of threads. The blocks
+// keep the buffer small.
 #pragma once
 
 #include <algorithm>
@@ -27,9 +27,9 @@ class ElementCorners {
   int n_nodes() const { return n_nodes_; }
   int n_elements() const { return n_elements_; }
   int n_packs() const { return static_cast<int>(nodes_.size()) / (N * Pack::kLanes); }
-  /// Length of the buffer of sum<R>.
+  /// Returns the length of the buffer of sum<R>.
   std::size_t buffer_size(int R = 3) const { return block_nodes_ * static_cast<std::size_t>(R); }
-  /// Number of packs in a block; number of nodes that one task of the thread pool sums.
+  /// kPacks: number of packs in a block; kNodes: number of nodes that one task of the thread pool sums.
   static constexpr int kPacks = 128, kNodes = 512;
 
   int node(int element, int corner) const {
@@ -77,7 +77,8 @@ class ElementCorners {
       }
     });
   }
-  /// Subtracts the sums of vectors, terms t[a][0..2], from the coordinates f of all nodes.
+  /// Subtracts the sums of the vectors t[a][0..2] of all corners from the vectors f of all nodes (order of
+  /// nodes.h). buffer, terms: as in sum<3>.
   template <class Terms>
   void subtract_sums(double* buffer, double* f, ThreadPool* pool, Terms&& terms) const {
     sum<3>(buffer, pool, terms, [&](int node, const double* total) {
@@ -87,8 +88,8 @@ class ElementCorners {
 
  private:
   int n_nodes_, n_elements_;
-  // Indices [pack][corner][lane]: the node, and its number among the nodes of its block. Free lanes of the
-  // last pack repeat the last element.
+  // Indexed by [pack][corner][lane]: the node, and the number of the node among the nodes of its block. Free
+  // lanes of the last pack repeat the last element.
   std::vector<int> nodes_, local_;
   // A slot is one node of one block. Slots of block b: block_first_[b] .. block_first_[b + 1] - 1.
   std::vector<std::size_t> block_first_;

@@ -1,6 +1,6 @@
 // Upper bound on omega^2 of K u = omega^2 M u from single elements. The mass of each node is split among its
-// elements in proportion to their volumes, M = sum of M_e. Then the largest omega^2 is at most the largest of
-// K_e u = omega^2 M_e u over all elements (Irons & Treharne 1971).
+// elements in proportion to their volumes, M = sum of M_e. Then the largest omega^2 is at most the largest
+// omega^2 of K_e u = omega^2 M_e u over all elements (Irons & Treharne 1971).
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-/// Returns the bound, 1/s^2; infinity if a mass is not positive. M: diagonal of the mass matrix in the order
-/// of nodes.h, kg. stiffness(e): K_e, whose row 3 a + i is direction i of corner a. volume(e): volume of the
-/// element, the weight by which the mass of a node is split among its elements.
+/// Returns the bound, 1/s^2; infinity if the mass of a corner is not positive. M: diagonal of the mass matrix
+/// in the order of nodes.h, kg. stiffness(e): K_e, whose row 3 a + i is direction i of corner a. volume(e):
+/// volume of the element, the weight by which the mass of a node is split among its elements.
 template <int N, class Stiffness, class Volume>
 double element_frequency_bound(const ElementCorners<N>& corners, const VecX<double>& M, Stiffness&& stiffness,
                                Volume&& volume) {

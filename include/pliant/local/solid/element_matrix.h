@@ -1,7 +1,7 @@
 // Stiffness matrices of elements, K = sum_e K_e: their entries as triplets, and an upper bound on the
 // frequency. The mass of each coordinate is split among its elements, M = sum_e M_e. Then
 //   x K x = sum_e x K_e x <= max_e(omega_e^2) sum_e x M_e x = max_e(omega_e^2) x M x,
-// so that omega^2 of the whole is at most the largest omega_e^2 of one element (Irons & Treharne 1971). The
+// so that omega^2 of the mesh is at most the largest omega_e^2 of one element (Irons & Treharne 1971). The
 // mass of coordinate i is split in proportion to sum_j |K_e,ij|, which makes the bound tight.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-/// Stiffness matrix K of one element and the indices of its local coordinates.
+/// Stiffness matrix K of one element, and the index of each of its rows in the local coordinates of the mesh.
 template <int N>
 struct ElementMatrix {
   std::array<int, N> index;

@@ -10,17 +10,17 @@
 
 namespace pliant {
 
-/// Four consecutive nodes, or fewer at the end. full: all four exist; the compiler then keeps sums over nodes
-/// in registers.
+/// Four consecutive nodes, or fewer at the end of the column. full: whether all four nodes exist; the
+/// compiler then keeps sums over nodes in registers.
 template <bool full = false>
 class FourNodes {
  public:
-  /// Nodes first .. first + 3 of n.
+  /// Selects the nodes first .. first + 3, as far as they are below n.
   FourNodes(Eigen::Index first, Eigen::Index n)
       : first_(first), count_(static_cast<int>(std::min<Eigen::Index>(Pack::kLanes, n - first))) {}
 
   Eigen::Index first() const { return first_; }
-  /// Reads one number for each node; lanes without a node are 0.
+  /// Returns the numbers of the nodes in a column; lanes without a node are 0.
   [[gnu::always_inline]] Pack load(const double* column) const {
     if constexpr (!full)
       if (count_ != Pack::kLanes) return load_some(column + first_);
@@ -28,13 +28,14 @@ class FourNodes {
     std::memcpy(x.vectors, column + first_, sizeof x.vectors);
     return x;
   }
-  /// Writes one number for each node.
+  /// Writes the numbers of the nodes to a column.
   [[gnu::always_inline]] void store(double* column, const Pack& x) const {
     if constexpr (!full)
       if (count_ != Pack::kLanes) return store_some(column + first_, x);
     std::memcpy(column + first_, x.vectors, sizeof x.vectors);
   }
-  /// Read and write vectors: three columns of `rows` numbers, one after the other.
+  /// Read and write vectors of the nodes. The vectors are stored in three columns of `rows` numbers, one
+  /// column after the other.
   [[gnu::always_inline]] Vec3<Pack> load(const double* columns, Eigen::Index rows) const {
     return {load(columns), load(columns + rows), load(columns + 2 * rows)};
   }
@@ -54,8 +55,8 @@ class FourNodes {
   int count_;
 };
 
-/// Calls act(four) once for every four of the n nodes. `four` is a FourNodes<true>; in the last call it is a
-/// FourNodes<> if n is not a multiple of four.
+/// Calls act(four) once for every four of the n nodes. `four` is a FourNodes<true>. If n is not a multiple of
+/// four, `four` is a FourNodes<> in the last call.
 template <class F>
 void for_each_four(Eigen::Index n, F&& act) {
   Eigen::Index first = 0;

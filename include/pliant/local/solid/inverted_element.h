@@ -1,4 +1,4 @@
-// The exception of materials whose energy is not defined for inverted or flat elements.
+// The exception that a material throws if its energy is not defined for an inverted or flat element.
 #pragma once
 
 #include <stdexcept>

@@ -1,10 +1,10 @@
-// Neo-Hookean material without logarithms (Smith, De Goes & Kim 2018, without their logarithmic term, which
-// prevents the equilibrium of elements that have collapsed to a point). From F = dx/dX, with J = det F and
-// the cofactors C = dJ/dF of F,
+// Neo-Hookean material of Smith, De Goes & Kim (2018) without their logarithmic term. Without this term, an
+// element that has collapsed to a point is in equilibrium. With F = dx/dX, J = det F and the cofactors
+// C = dJ/dF of F,
 //   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
 //   P = mu F + ((lambda + mu)(J - 1) - mu) C.
-// For small strains the constants are those of Hooke's law. W is a polynomial, so that it is defined for
-// inverted elements, and its force turns them back.
+// For small strains the law is Hooke's law with constants lambda and mu. W is a polynomial in F. It is
+// therefore defined for inverted elements, and the forces turn such elements back.
 #pragma once
 
 #include <pliant/local/elasticity.h>

@@ -1,5 +1,5 @@
-// Evaluation of solid energies: nodal forces, their derivative, element stiffness matrices. add_force()
-// evaluates the elastic force element by element: -K q_d of Eq. (11) for the linear law, -dE/dx for others.
+// Function bodies of solid_energy.h. add_force() evaluates the elastic force element by element: -K q_d of
+// Eq. (11) for the linear law, -dE/dx for the other laws.
 #pragma once
 
 #include <algorithm>

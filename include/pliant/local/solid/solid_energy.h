@@ -4,7 +4,7 @@
 // where x = d for the linear law and x = p = s + d for the other laws. The force on node a is
 //   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG.
 // K dx at node a is -f_a with P replaced by dP, the change of P along the gradient of dx. One kernel serves
-// every element (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each quadrature point.
+// every element (tetrahedron.h) and every law. (dX/dxi)^-1 is stored for each quadrature point.
 #pragma once
 
 #include <array>
@@ -56,11 +56,11 @@ class SolidEnergy final : public NodalEnergy {
     Mat3<Pack> inverse;  ///< (dX/dxi)^-1, 1/m
     Pack weight;  ///< weight of the quadrature rule times det dX/dxi, m^3; 0 in lanes without an element
   };
-  /// dP/dG and dG/dx_a; see the functions below.
+  /// dP/dG and dG/dx_a: results of stress_derivative() and gradient_matrix().
   using StressDerivative = Eigen::Matrix<double, 9, 9>;
   using GradientMatrix = Eigen::Matrix<double, 9, 3 * N>;
-  /// Subtracts from f the nodal forces of the stress P = stress(G) of all elements. G: gradients of the given
-  /// nodal fields at a quadrature point, G[k] of fields[k].
+  /// Subtracts from f the nodal sums of weight * P (dX/dxi)^-T dN_a/dxi over all elements, with P =
+  /// stress(G). G[k] is the gradient of the nodal vectors fields[k] at a quadrature point.
   template <int Fields, class Stress>
   void subtract_forces(const std::array<const double*, Fields>& fields, VecX<double>& f, Buffer& buffer,
                        ThreadPool* pool, Stress&& stress) const;

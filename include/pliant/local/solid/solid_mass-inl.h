@@ -1,4 +1,4 @@
-// Lumped and consistent masses of tetrahedra.
+// Function bodies of solid_mass.h.
 #pragma once
 
 #include <stdexcept>

@@ -1,10 +1,10 @@
 // Masses of the nodes of tetrahedra, M_ab = int of density N_a N_b over the rest volume.
-//   lumped       4 nodes: each corner receives a quarter of the element's mass (row sums of M).
-//                10 nodes: the diagonal of M is scaled to the element's mass (Hinton, Rock & Zienkiewicz
-//                1976), because row sums are negative at corners. Frequencies then converge with second order
-//                only, and not with fourth order as with the consistent mass.
-//                15 nodes: weights of the element's own nodal rule (kEnrichedNodes in tetrahedron.h).
-//   consistent   M itself, for modes.
+//   lumped       4 nodes: each corner receives a quarter of the mass of the element (row sums of M).
+//                10 nodes: the diagonal of M is scaled to the mass of the element (Hinton, Rock &
+//                Zienkiewicz 1976), because row sums are negative at corners. Frequencies then converge with
+//                second order; with the consistent mass they converge with fourth order.
+//                15 nodes: weights of the nodal rule of the element (kEnrichedNodes in tetrahedron.h).
+//   consistent   M, for modes, integrated with kTetrahedronMassRule (tetrahedron.h).
 #pragma once
 
 #include <vector>

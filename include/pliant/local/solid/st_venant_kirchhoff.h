@@ -1,7 +1,7 @@
 // St. Venant-Kirchhoff material. From F = dx/dX, with Green's strain G = (F^T F - I)/2,
 //   W = lambda/2 (tr G)^2 + mu G:G,   S = lambda tr(G) I + 2 mu G,   P = F S.
-// The law is valid for large rotations and small strains. It softens under strong compression, and an
-// inverted element may stay at rest.
+// The law is valid for large rotations and small strains. The material softens under strong compression, and
+// an inverted element can be in equilibrium without loads.
 #pragma once
 
 #include <pliant/local/elasticity.h>

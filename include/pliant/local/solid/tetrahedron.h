@@ -7,9 +7,10 @@
 //              lumped masses positive and keep convergence of fourth order (Geevers, Mulder & van der Vegt
 //              2018).
 // Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
-// exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that a uniform stress is in balance on
-// curved elements too. With 15 nodes a small imbalance remains if the bubbles have non-zero coefficients in
-// the rest positions inside the solid. The mass rule is exact for degree 5 (Walkington 2000).
+// exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that the nodal forces of a uniform stress
+// are in balance on curved elements, too. With 15 nodes a small imbalance remains if the rest positions
+// inside the solid have bubbles with non-zero coefficients. The mass rule is exact for degree 5 (Walkington
+// 2000): M of straight elements is exact for 4 and 10 nodes, but not for 15 nodes.
 #pragma once
 
 #include <array>
@@ -67,7 +68,7 @@ constexpr std::array<TetrahedronPoint, 14> fourteen_points() {
 inline constexpr std::array<std::array<std::size_t, 2>, 6> kTetrahedronEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-/// Rule of the consistent mass matrix of all elements.
+/// Rule of the consistent mass matrix of all elements, exact for degree 5.
 inline constexpr std::array<TetrahedronPoint, 14> kTetrahedronMassRule = detail::fourteen_points();
 
 /// Members of every element: the quadrature rule of the stiffness, the shape functions N, the gradient of
@@ -228,8 +229,8 @@ struct EnrichedTetrahedron {
   }
 };
 
-/// Nodes of the enriched element. The weight of a node is the volume of the reference tetrahedron (1/6 in
-/// total) that is lumped to this node.
+/// Nodes of the enriched element. The weight of a node is its share of the volume 1/6 of the reference
+/// tetrahedron; the lumped masses use these weights.
 inline constexpr std::array<TetrahedronPoint, 15> kEnrichedNodes = [] {
   std::array<TetrahedronPoint, 15> nodes{};
   for (std::size_t c = 0; c < 4; ++c) {
