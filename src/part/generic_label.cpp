@@ -10,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// Writes e and returns [e_u e_v e_w], both at uvw = (u, v, w).
+/// Returns the derivatives [e_u e_v e_w] of e at uvw = (u, v, w), and writes e there.
 Mat3<double> tangents_at(const ShapeInterface& shape, const Vec3<double>& uvw, ShapeParameters a,
                          Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);
@@ -22,7 +22,7 @@ Mat3<double> tangents_at(const ShapeInterface& shape, const Vec3<double>& uvw, S
   return E;
 }
 
-/// Distance from the poles, in rad, at which derivatives are evaluated instead of at the poles.
+/// Angle (rad) from a pole. Nearer to a pole, derivatives are evaluated at this angle from the pole.
 constexpr double kOffPole = 1e-7;
 
 }  // namespace

@@ -36,8 +36,8 @@ inline Dual<1> sum_of_lanes(const DualPack& x) {
   return r;
 }
 
-/// Throws InvertedElement if the material at a quadrature point is turned inside out. A sheet cannot be
-/// turned inside out, so it is not checked.
+/// Throws InvertedElement if the material at one of four quadrature points is turned inside out. A sheet
+/// cannot be turned inside out and is not checked.
 template <class Law>
 void throw_if_inverted(const Law&, const Mat3<Pack>& F) {
   if constexpr (!std::is_same_v<Law, SheetStrain>)
@@ -61,7 +61,7 @@ void for_each_strain_block(const StrainPoints& points, F&& act) {
     act(first, std::min(strain::kBlock, packs - first));
 }
 
-/// Second derivatives of F along pairs of directions v, w, from those along single directions,
+/// Second derivatives of F by q_s along two directions v and w, from second derivatives along one direction,
 /// Q(v) = d2F[v, v]:
 ///   4 d2F[v, w] = Q(v + w) - Q(v - w)
 class SecondStrainDerivatives {
@@ -94,11 +94,11 @@ class SecondStrainDerivatives {
   const VecMax<double>& q_s_;
 };
 
-/// q_s and q_s_dot with their derivatives along a direction, split into values and derivatives.
+/// The values and the derivatives of dual q_s and q_s_dot: q, dq, rate and d_rate.
 struct SplitMotion {
   VecMax<double> q, dq, rate, d_rate;
-  double length;             ///< largest component of dq, in multiples of the scales of the parameters
-  VecMax<double> direction;  ///< dq / length
+  double length;             ///< largest |component| of dq, in multiples of the scales of the parameters
+  VecMax<double> direction;  ///< dq / length; zero if dq is zero
 
   SplitMotion(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const VecMax<double>& unit) {
     const auto n = q_s.size();
@@ -136,7 +136,7 @@ struct DualStrain {
 };
 
 /// Returns the first Piola-Kirchhoff stress of a law plus beta times its viscous stress. Adds weight times
-/// the power density of the viscous stress to `power`.
+/// the dissipated power per volume (per area of a sheet), which is at least 0, to `power`.
 template <class Law>
 Mat3<DualPack> damped_stress(const Law& law, const DualStrain& at, double beta, const Pack& weight,
                              DualPack& power) {

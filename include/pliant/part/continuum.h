@@ -1,12 +1,12 @@
-// Continuum elasticity of the global parameters. The strain energy is that of the map from the rest shape to
-// the present shape,
+// Continuum elasticity of the global parameters q_s. The strain energy E is that of the map from the rest
+// shape to the present shape s(u; q_s) of material points u,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
 // with P_v = F S(Gdot): S is Hooke's stress and Gdot the rate of Green's strain (local/solid/hooke.h). For
-// linear elasticity P_v is the stress of Fdot. The user gives material constants instead of a matrix K_s. F
-// and its derivatives come from dual numbers: the dual part of a material point is a direction in the rest
-// body. The rest shape is that of time 0.
+// linear elasticity P_v is the linear stress at the strain rate sym(Fdot). The user gives material constants
+// instead of a matrix K_s. F and its derivatives come from dual numbers: the dual part of a material point is
+// a direction in the rest body. The rest shape is that of time 0.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ namespace pliant {
 class Part;
 struct Counters;
 
-/// A law by its name in all_continuum_laws(), and the constants of the material. Laws of solids do not use
+/// The name of a law, one of all_continuum_laws(), and the constants of the material. Laws of solids ignore
 /// the thickness.
 struct ContinuumSettings {
   std::string law = "neo_hookean";
@@ -40,7 +40,7 @@ struct ContinuumLawInfo {
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
 };
-/// Returns the laws. A law has the name of the corresponding law of local deformation.
+/// Returns all laws. Each has the name of the corresponding law of local deformation (local/local_laws.h).
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
 /// Quadrature points of the rest body with derivatives along directions X of the rest body: x, y and z for a
@@ -52,14 +52,14 @@ struct StrainPoints {
   int n_points = 0;
   int directions = 3;
   std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
-  /// Relative change of the integrals when the points are doubled once more, at least kStrainTolerance; 0 for
-  /// "affine". The value is also kStrainTolerance if the change is at most 100 kStrainTolerance and finer
-  /// rules did not halve it.
+  /// Relative change of the integrals when the nodes along a direction are doubled once more: 0 for "affine",
+  /// else at least kStrainTolerance. The value is exactly kStrainTolerance if the search converged, or if it
+  /// accepted a change of at most 100 kStrainTolerance that finer rules did not halve.
   double relative_error = 0;
 };
 
-/// A rule is fine enough if doubling its points changes energy, force and stiffness by at most this relative
-/// amount.
+/// A rule has converged if doubling its nodes changes energy, force, stiffness and volume by at most this
+/// relative amount.
 inline constexpr double kStrainTolerance = 1e-6;
 
 /// Linear elasticity with the small strain eps = sym(F - I).
@@ -97,7 +97,7 @@ struct Damped : Law {
   }
 };
 
-/// St. Venant-Kirchhoff's law of a sheet. Only the first two columns of F are used, and W is per area.
+/// St. Venant-Kirchhoff's law of a sheet. Only the first two columns of F are used. W is energy per area.
 struct SheetStrain {
   double lambda, mu;  ///< constants of plane stress times the thickness, N/m
   explicit SheetStrain(const Sheet& sheet)
@@ -125,9 +125,9 @@ ContinuumLaw continuum_law(const ContinuumSettings& settings);
 /// The strain energy of a part.
 class ContinuumEnergy {
  public:
-  /// volume: volume of a solid (m^3) or area of a shell (m^2) at rest. Throws std::invalid_argument as
-  /// continuum_law() does, and if the search for quadrature points does not converge; that message names the
-  /// parameters.
+  /// Places the quadrature points. volume: volume of a solid at rest, m^3; ignored for a shell. Throws
+  /// std::invalid_argument as continuum_law() does, and if the search for quadrature points does not
+  /// converge; the message of the second error names the part and its dynamic parameters.
   ContinuumEnergy(const Part& part, const ContinuumSettings& settings, double volume);
 
   const ContinuumSettings& settings() const { return settings_; }
@@ -140,22 +140,22 @@ class ContinuumEnergy {
   /// of a solid is turned inside out at a quadrature point.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
-  /// Adds these forces and returns this power with their derivatives along the direction of the dual parts of
-  /// q_s and q_s_dot.
+  /// Computes the forces and the power of add_force() above, with their derivatives along the direction of
+  /// the dual parts of q_s and q_s_dot.
   Dual<1> add_force(const Part& part, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, double beta,
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
-  /// Returns the exact d2E/dq_s2, n_s x n_s.
+  /// Returns d2E/dq_s2 at q_s (n_s x n_s), including the geometric stiffness.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
-  /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
-  /// positive semidefinite. If W is quadratic in the strain, it is stiffness() without the geometric
-  /// stiffness (the terms with second derivatives of the strain).
+  /// Returns the damping matrix for beta = 1 s, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. This
+  /// matrix is positive semidefinite. If W is quadratic in the strain, the matrix is stiffness() without the
+  /// geometric stiffness (the terms with second derivatives of the strain).
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:
   ContinuumSettings settings_;
   ContinuumLaw law_;
   StrainPoints points_;
-  VecMax<double> unit_;  // scale of each dynamic parameter, for second derivatives
+  VecMax<double> unit_;  // scale of each dynamic parameter, for directions of second derivatives
 };
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Counters of the work that the kernels of parts did. With these numbers, tests and run.json show which work
-// was skipped.
+// Counters of the work that the kernels of parts have done. Tests and the file run.json use these counters to
+// show which work was skipped.
 #pragma once
 
 namespace pliant {
@@ -8,7 +8,7 @@ struct Counters {
   long jacobian_points = 0;  ///< mass points or nodes whose J was evaluated
   long rate_points = 0;      ///< mass points or nodes whose Jdot qs_dot was evaluated
   long mass_matrices = 0;    ///< mass matrices computed
-  long inertial_forces = 0;  ///< inertial forces g_q evaluated
+  long inertial_forces = 0;  ///< vectors g_q evaluated; none is counted for a part at rest
   long point_jets = 0;       ///< material points evaluated for forces, joints and recorded paths (tracks)
   long surfaces = 0;         ///< surfaces evaluated for output
   long strain_points = 0;    ///< quadrature points whose strain was evaluated

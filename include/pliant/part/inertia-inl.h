@@ -2,9 +2,9 @@
 //   M = sum m G^T G            MassPointSums::add_mass()
 //   g_q = -sum m G^T b         MassPointSums::add_inertial_force()
 // with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot (inertia.h), and
-// the jets of single material points. These sums serve parts whose s is not linear in q_s.
-// evaluate_inertia_of(), below, sends rigid parts to gyroscopic_force(), and parts with s linear in q_s to
-// LinearInertia (linear_inertia-inl.h).
+// the jets of single material points. In a step, only deformable parts whose s is not linear in q_s use these
+// sums. evaluate_inertia_of(), below, calls evaluate_rigid_inertia() for rigid parts, and LinearInertia
+// (linear_inertia-inl.h) for parts with s linear in q_s.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Packs per batch. The jets of a batch stay in the first-level cache.
+/// Number of packs in a batch. The jets of a batch stay in the first-level cache.
 inline constexpr int kInertiaBlock = 8;
 
 /// The scalar of four points at once, for a scalar P of the parameters.
@@ -61,12 +61,14 @@ bool all_exactly_zero(const V& x) {
   return true;
 }
 
-/// Returns the level of jets that M and g_q need. rates: whether q_s_dot is not zero.
+/// Returns the level of jets that M and g_q need for n_s dynamic parameters. rates: whether q_s_dot is not
+/// zero.
 inline Level inertia_level(int n_s, bool rates) {
   return rates ? Level::rates : (n_s > 0 ? Level::jacobian : Level::position);
 }
 
-/// Sums over mass points for n_s dynamic parameters. Each sum has four lanes. S: Pack, or Dual<1, Pack>.
+/// Sums over mass points for n_s dynamic parameters. Each sum has four lanes, one for each point of a pack.
+/// S: Pack, or Dual<1, Pack>.
 template <class S>
 struct MassPointSums {
   int n_s;
@@ -95,7 +97,7 @@ struct MassPointSums {
     }
   }
 
-  /// Adds m G^T G to the sums of M, Eq. (11).
+  /// Adds m G^T G of four mass points to the sums of M, Eq. (11).
   void add_mass(const Jet<S>& jet, const Pack& m) {
     mass += m;
     const Vec3<S>& s = jet.s;
@@ -121,8 +123,8 @@ struct MassPointSums {
     }
   }
 
-  /// Adds m G^T b to the sums of -g_q, Eq. (11), where b is the acceleration of the mass point if all
-  /// generalised accelerations are zero. rates: whether qs_dot is not zero.
+  /// Adds m G^T b of four mass points to the sums of -g_q, Eq. (11). b is the acceleration of a mass point if
+  /// all generalised accelerations are zero. rates: whether q_s_dot is not zero.
   void add_inertial_force(const Jet<S>& jet, const Pack& m, const Vec3<S>& omega, bool rates) {
     Vec3<S> acceleration = omega.cross(omega.cross(jet.s));
     if (rates) {
@@ -140,7 +142,7 @@ struct MassPointSums {
   }
 };
 
-/// Writes mass, first moment and M from the sums.
+/// Writes the mass, the first moment and M from the sums.
 template <class P, class S>
 void write_mass_matrix(const MassPointSums<S>& sums, Inertia<P>& out) {
   const int n = sums.n_s;
@@ -184,7 +186,7 @@ void write_inertial_forces(const MassPointSums<S>& sums, Inertia<P>& out) {
     out.g_q[6 + c] = -total(sums.Jb[static_cast<std::size_t>(c)]);  // Eq. (11)
 }
 
-/// The motion of a part at which its inertia is evaluated.
+/// The arguments of the inertia of a part: dynamic parameters, their rates and the angular velocity.
 template <class P>
 struct PartMotion {
   const VecMax<P>& q_s;
@@ -262,7 +264,7 @@ void evaluate_rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, I
   gyroscopic_force(omega, out, counters);
 }
 
-/// Copies the point in one lane of a jet.
+/// Copies one lane of a jet to a point. Without rates, p1 and p2 are set to zero.
 template <class P, class S>
 void read_lane(const Jet<S>& jet, int lane, int n_s, bool rates, PointJet<P>& point) {
   using Batch = BatchScalar<P>;
@@ -275,7 +277,7 @@ void read_lane(const Jet<S>& jet, int lane, int n_s, bool rates, PointJet<P>& po
   }
 }
 
-/// Computes the jets of any material points, for forces, joints and tracks.
+/// Computes the jets of any material points, for forces, joints and tracks (recorded paths of points).
 template <class P>
 void evaluate_points(const PartEvaluation& part, const std::vector<Material<double>>& at,
                      const VecMax<P>& q_s, const VecMax<P>& q_s_dot, std::vector<PointJet<P>>& out,

@@ -2,7 +2,8 @@
 // body frame:
 //   M = sum m G^T G,   g_q = -sum m G^T b,   G = [I, -[p]x, J],
 //   b = omega x (omega x p) + 2 omega x (J qs_dot) + Jdot qs_dot,
-// in the order (c, omega, q_s). The first block of M multiplies R^T c_ddot. inertia-inl.h computes the sums.
+// summed over mass points m at positions p, in the order (c, omega, q_s). The first block of M multiplies
+// R^T c_ddot. inertia-inl.h computes the sums.
 #pragma once
 
 #include <pliant/math/types.h>
@@ -11,7 +12,7 @@ namespace pliant {
 
 template <class S>
 struct Inertia {
-  // The matrices are on the heap, so that the other data of consecutive parts are close together in memory.
+  // M and g_q are on the heap, so that the other data of consecutive parts are close together in memory.
   MatX<S> M;        ///< (6 + n_s) x (6 + n_s)
   VecX<S> g_q;      ///< 6 + n_s
   Vec3<S> moment;   ///< sum m p: mass times the centre of mass in the body frame, kg m

@@ -1,7 +1,7 @@
 // Inertia of a part whose s is linear in its dynamic parameters q_1 ... q_n,
 //   s = s_0 + sum s_k q_k,   J = (s_1 ... s_n) constant.
-// The first and second moments of s_0 and s_k, summed once over the mass points, replace the sums of Eq. (11)
-// in a step.
+// The first moments sum m s_k and the second moments sum m s_k s_l^T, k, l = 0 ... n, are summed once over
+// the mass points. In a step they replace the sums of Eq. (11).
 #pragma once
 
 #include <pliant/math/scalar/dual.h>
@@ -16,9 +16,9 @@ class LinearInertia {
   /// Adds a mass point of mass m (kg). The columns of s (3 x (1 + n)) are s_0, s_1 ... s_n at this point.
   void add(const Eigen::Matrix3Xd& s, double m);
 
-  /// Returns M at q_s.
+  /// Returns M at q_s, (6 + n) x (6 + n).
   MatMax<double> mass_matrix(const VecMax<double>& q_s) const;
-  /// Computes M and g_q; arguments and results are those of Part::evaluate_inertia().
+  /// Computes M, g_q, the mass and the first moment. The arguments are those of Part::evaluate_inertia().
   void evaluate(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                 Inertia<double>& out) const;
   void evaluate(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
@@ -28,7 +28,7 @@ class LinearInertia {
   /// 3 x 3 blocks side by side, one for each s_k, k = 0 ... n.
   template <class P>
   using Blocks = Eigen::Matrix<P, 3, Eigen::Dynamic, 0, 3, 3 * (1 + kMaxGlobal)>;
-  /// Returns sum m s s_k^T at q_s.
+  /// Returns the blocks sum m s s_k^T at q_s.
   template <class P>
   Blocks<P> sum_s_sk(const VecMax<P>& q_s) const;
   /// Fills M and the first moment. Returns sum m s s^T.

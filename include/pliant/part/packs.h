@@ -10,15 +10,15 @@
 
 namespace pliant {
 
-/// Returns the four material points from number `first` on as one pack. The last point fills the lanes beyond
-/// the end.
+/// Returns the material points number `first` to `first` + 3 as one pack. Lanes beyond the last point repeat
+/// this point.
 inline Material<Pack> pack_at(const std::vector<Material<double>>& points, std::size_t first) {
   std::array<Material<double>, Pack::kLanes> four;
   for (std::size_t i = 0; i < Pack::kLanes; ++i) four[i] = points[std::min(first + i, points.size() - 1)];
   return gather(four.data());
 }
 
-/// Returns all material points in packs of four.
+/// Returns all material points in packs of four. Unused lanes of the last pack repeat the last point.
 inline std::vector<Material<Pack>> packs_of(const std::vector<Material<double>>& points) {
   std::vector<Material<Pack>> packs;
   for (std::size_t first = 0; first < points.size(); first += Pack::kLanes)

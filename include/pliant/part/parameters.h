@@ -19,11 +19,11 @@ inline constexpr int kMaxParameters = 64;
 struct Parameter {
   std::string name;           ///< "a1", "taper.tx"
   const ParameterSpec* spec;  ///< name, unit, default and ranges in its shape or deformation
-  TimeFunction rest;          ///< rest value, a function of time; the value of a frozen parameter
+  TimeFunction rest;          ///< rest value, a function of time; a frozen parameter has this value
   double initial;             ///< value at time 0
   double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
-  Range limits;  ///< lower and upper limit of a dynamic parameter; each is a one-sided constraint
+  Range limits;  ///< lower and upper limit of a dynamic parameter; each limit is a one-sided constraint
   bool initial_given = false, limits_given = false;  ///< whether the user set `initial`, and `limits`
 
   /// The rest value at time 0.
@@ -38,16 +38,16 @@ struct ParameterValues {
 
 class Parameters {
  public:
-  /// Lists the parameters of a shape and a chain: all at their defaults, all frozen. A parameter of a link is
-  /// named type.name; several links of one type are named type, type2, type3, ... Throws
-  /// std::invalid_argument beyond kMaxParameters.
+  /// Lists the parameters of a shape and a chain. All parameters are frozen and have their default values. A
+  /// parameter of a link is named type.name; several links of one type are named type, type2, type3, ...
+  /// Throws std::invalid_argument for more than kMaxParameters parameters.
   Parameters(const ShapeInterface& shape, const std::vector<LinkInfo>& links);
 
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }
   int n_dynamic() const { return static_cast<int>(dynamic_.size()); }
-  /// The links of the chain that act, in order. A link acts if it has a dynamic parameter or is not the
-  /// identity. The kernels skip the other links.
+  /// The links of the chain that act, in order. A link acts if one of its parameters is dynamic, or if the
+  /// rest value of one of its amplitudes (LinkInfo) is not the default. The kernels skip all other links.
   const std::vector<LinkInfo>& links() const { return acting_; }
   /// Every link of the chain, in order.
   const std::vector<LinkInfo>& all_links() const { return links_; }
@@ -57,7 +57,7 @@ class Parameters {
   const Parameter& moving(int k) const {
     return all_[static_cast<std::size_t>(dynamic_[static_cast<std::size_t>(k)])];
   }
-  /// Returns the number of the parameter of this name, or -1.
+  /// Returns the number of the parameter of this name; -1 if there is none.
   int find(const std::string& name) const;
   /// Returns all names, separated by blanks.
   std::string names() const;
@@ -66,14 +66,14 @@ class Parameters {
   const std::vector<int>& dynamic() const { return dynamic_; }
   /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
-  /// Updates the lists of dynamic parameters, acting links and frozen values. Where the user set no initial
-  /// value or limits, it sets them to the rest value and to the range of the ParameterSpec. Must be called
-  /// after `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal
-  /// dynamic parameters.
+  /// Updates the lists of dynamic parameters, acting links and frozen values. An initial value that the user
+  /// did not set becomes the rest value; limits that the user did not set become the dynamic range of the
+  /// ParameterSpec. Must be called after `dynamic` or `rest` of a parameter has changed. Throws
+  /// std::invalid_argument for more than kMaxGlobal dynamic parameters.
   void update();
 
-  /// Returns the values of all parameters: the dynamic ones from q_s and q_s_dot, the frozen ones at their
-  /// rest values.
+  /// Returns the values and rates of all parameters. Dynamic parameters have those of q_s and q_s_dot; frozen
+  /// parameters have their rest values and zero rates.
   template <class P, class Q>
   ParameterValues<P> expand(const Q& q_s, const Q& q_s_dot) const {
     ParameterValues<P> values;
@@ -88,7 +88,7 @@ class Parameters {
     }
     return values;
   }
-  /// Returns all parameters at their rest values of time 0.
+  /// Returns the rest values of all parameters at time 0, with zero rates.
   ParameterValues<double> rest() const;
 
  private:

@@ -1,5 +1,5 @@
 // A part: a solid primitive with its global deformations, its mass and its elasticity. Part is the class that
-// users see; it does not depend on the type of the shape. It has four pieces:
+// users see; the class does not depend on the type of the shape. Its code is in four files:
 //   part_description.h   the settings of the user: place, velocity, rest, stiffness, damping, mass, ...
 //   part_constants.h     the results of prepare(): mass points, K_s, inertia at rest, ...
 //   part_evaluation.h    the evaluation in a step: s, J, normals, M and g_q
@@ -25,7 +25,7 @@ class Part : public PartEvaluation {
 
   // The functions below are valid after prepare().
 
-  /// Number of local coordinates.
+  /// Number of local coordinates; 0 if the part does not deform locally.
   int n_d() const { return constants_.local ? static_cast<int>(constants_.local->n_d()) : 0; }
   /// Number of velocities: linear, angular, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_v() const { return fixed() ? 0 : 6 + n_s() + n_d(); }
@@ -34,14 +34,13 @@ class Part : public PartEvaluation {
 
   const MassPoints& mass_points() const { return constants_.mass_points; }
   double total_mass() const { return constants_.rest_inertia.mass; }
-  /// The inertia at rest. A rigid part keeps it at all times.
+  /// The inertia at rest. A rigid part has this inertia at all times.
   const Inertia<double>& rest_inertia() const { return constants_.rest_inertia; }
   /// The largest absolute coordinate of the surface at rest in the body frame, m, from a sample of its
   /// points.
   double size() const { return constants_.size; }
-  /// Returns the threshold of inertia of the k-th dynamic parameter (kg for a length, else kg m^2). A
-  /// diagonal entry of M up to this value may be a rounding error for a part of this mass and size. A larger
-  /// entry is an inertia.
+  /// Returns the smallest inertia of the k-th dynamic parameter (kg for a length, else kg m^2) that is not a
+  /// rounding error for a part of this mass and size. A diagonal entry of M up to this value counts as zero.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.
@@ -49,10 +48,11 @@ class Part : public PartEvaluation {
   /// The strain energy of the elastic material; nullptr if the part has no elastic material or no dynamic
   /// parameter.
   const ContinuumEnergy* continuum() const { return constants_.continuum.get(); }
-  /// Returns d2E/dq_s2 at q_s (n_s x n_s), with the elastic energy E of K_s and of the material.
+  /// Returns d2E/dq_s2 at q_s (n_s x n_s). E is the sum of the energies of K_s and of the elastic material.
   MatX<double> elastic_stiffness(const VecMax<double>& q_s) const;
-  /// Returns the matrix that beta multiplies, n_s x n_s: K_s plus ContinuumEnergy::strain_stiffness(). It is
-  /// positive semidefinite.
+  /// Returns the matrix that beta multiplies in the damping of q_s (n_s x n_s): K_s, plus
+  /// ContinuumEnergy::strain_stiffness() if the part has elastic material. The matrix is positive
+  /// semidefinite.
   MatX<double> strain_stiffness(const VecMax<double>& q_s) const;
   /// The local deformation; nullptr if the part does not deform locally.
   const LocalDeformation* local() const { return constants_.local.get(); }
@@ -64,7 +64,7 @@ class Part : public PartEvaluation {
   // The steps of prepare(), in order.
   void compute_size();
   void use_given_inertia();
-  /// Computes mass points and the inertia at rest. Returns the volume of a solid (m^3), or the area of a
+  /// Computes the mass points and the inertia at rest. Returns the volume of a solid (m^3) or the area of a
   /// shell (m^2).
   double compute_inertia();
   void compute_elasticity(double volume);

@@ -15,7 +15,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns x as text: with 6 digits if that text reads back as exactly x, else with 17 digits.
+/// Returns x as text: with 6 digits if this text reads back as exactly x, else with 17 digits.
 inline std::string part_text(double x) {
   std::ostringstream out;
   out.precision(17);
@@ -28,8 +28,7 @@ inline std::string part_text(const Range& r) {
   return "[" + part_text(r.min) + ", " + part_text(r.max) + "]";
 }
 
-/// Returns the mass matrix of a rigid part, with zero inertial forces. The arguments are those of
-/// PartDescription::inertia().
+/// Returns the inertia of a rigid part with g_q = 0. The arguments are those of PartDescription::inertia().
 inline Inertia<double> rigid_part_inertia(double mass, const Mat3<double>& about_origin,
                                           const Vec3<double>& centre) {
   Inertia<double> inertia;

@@ -1,4 +1,4 @@
-// The description of a part: everything that the user sets. Part (part.h) inherits these setters by way of
+// The description of a part: everything that the user sets. Part (part.h) inherits these setters through
 // PartEvaluation. Part::prepare() computes the constants of the part from this description.
 #pragma once
 
@@ -22,62 +22,67 @@ class Part;
 
 class PartDescription {
  public:
-  /// Names of parameters with a value each: {{"a1", 0.5}, {"taper.tx", 0.2}}.
+  /// Pairs of a parameter name and a value: {{"a1", 0.5}, {"taper.tx", 0.2}}.
   using Named = std::vector<std::pair<std::string, double>>;
 
   PartDescription(const PartDescription&) = delete;
   PartDescription& operator=(const PartDescription&) = delete;
 
-  // The setters. Each returns the part, so that calls chain. For an impossible argument each throws
-  // std::invalid_argument; the message names the part and, where there are any, the parameter, the value and
-  // the allowed values. While a Model uses the part each throws std::logic_error.
+  // The setters. Each setter returns the part, so that calls can be chained. A setter throws
+  // std::invalid_argument for an impossible argument. The message names the part, and the parameter, the
+  // value and the allowed values if the error concerns a parameter. A setter throws std::logic_error while a
+  // Model uses the part.
 
-  /// Sets the position of the frame (m, world) and its orientation (body to world; normalised here).
+  /// Sets the position c of the frame (m, world) and its orientation R (body to world), which is normalised
+  /// here.
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
-  /// Sets the initial velocity of the frame (m/s, world) and its angular velocity (rad/s, body frame).
+  /// Sets the velocity of the frame (m/s, world) and its angular velocity (rad/s, body frame) at time 0.
   Part& velocity(const Vec3<double>& c_dot, const Vec3<double>& omega);
-  /// Sets rest values (m, rad or 1). A frozen parameter keeps its rest value.
+  /// Sets constant rest values (m, rad or 1). A frozen parameter always has its rest value.
   Part& rest(const Named& values);
-  /// Sets a rest value that is a function of time. The parameter must be dynamic when prepare() runs.
+  /// Sets a rest value that is a function of time. Unless the function is constant, the parameter must be
+  /// dynamic when prepare() runs.
   Part& rest(const std::string& parameter, TimeFunction of_time);
-  /// Sets values at time 0, and makes the parameters dynamic.
+  /// Sets values at time 0 (m, rad or 1), and makes the parameters dynamic.
   Part& initial(const Named& values);
   /// Sets rates at time 0, per second, and makes the parameters dynamic.
   Part& initial_rate(const Named& values);
-  /// Sets entries of the diagonal of K_s, and makes the parameters dynamic. The energy is 1/2 K (q - rest)^2.
+  /// Sets entries K of the diagonal of K_s, and makes the parameters dynamic. The energy (J) of a parameter q
+  /// is 1/2 K (q - rest)^2.
   Part& stiffness(const Named& values);
-  /// Sets a symmetric block of K_s over the named parameters, and makes them dynamic.
+  /// Sets a symmetric, positive semidefinite block K of K_s over the named parameters, and makes these
+  /// parameters dynamic.
   Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
   /// Sets the lower and the upper limit of a dynamic parameter. Each limit is a one-sided constraint.
-  /// prepare() checks that the limits are within the allowed range of the parameter, which is in multiples of
-  /// the rest value for some parameters.
+  /// prepare() checks that the limits are within the dynamic range of the ParameterSpec. With
+  /// ParameterSpec::relative, this range is in multiples of the rest value.
   Part& limits(const std::string& parameter, Range range);
-  /// Makes the part elastic: adds the strain energy of the map from the rest shape to the present shape to
-  /// the energy of K_s. A part that deforms locally gets its elasticity from the laws of its local
-  /// deformation instead.
+  /// Makes the part elastic: the strain energy of the map from the rest shape to the present shape is added
+  /// to the energy of K_s. prepare() throws if the part also deforms locally; the laws of the local
+  /// deformation then give the elasticity.
   Part& elasticity(ContinuumSettings settings);
-  /// Makes parameters degrees of freedom.
+  /// Makes the parameters degrees of freedom.
   Part& make_dynamic(const std::vector<std::string>& parameters);
-  /// Makes parameters constants.
+  /// Makes the parameters constants.
   Part& freeze(const std::vector<std::string>& parameters);
   /// Sets the damping D = alpha M_ss + beta K_s of the global parameters (alpha in 1/s, beta in s) and the
-  /// drag nu M on all motion (nu in 1/s). M_ss is the block of M over q_s. beta also multiplies the viscous
-  /// stress of elastic material.
+  /// drag -nu M v on all velocities v (nu in 1/s). M_ss is the block of M over q_s. beta also multiplies the
+  /// viscous stress of elastic material.
   Part& damping(double alpha, double beta, double nu = 0);
   /// Puts the mass on the surface. The density is then per area (kg/m^2).
   Part& make_shell();
-  /// Sets the total mass (kg), which replaces the density.
+  /// Sets the total mass (kg). The masses of all mass points are scaled to this total.
   Part& mass(double total);
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
   /// of mass (m, body frame) of a rigid part. These values replace the density.
   Part& inertia(double mass, const Mat3<double>& about_origin,
                 const Vec3<double>& centre = Vec3<double>::Zero());
-  /// Makes the part deform locally: a shell at the nodes of a mesh of its surface, a solid at the nodes of a
-  /// mesh of its body, or either by modes.
+  /// Makes the part deform locally, with nodal displacements or modes (LocalSettings::Basis). The mesh covers
+  /// the surface of a shell or the body of a solid.
   Part& deform_locally(LocalSettings settings);
   /// Fixes the part: it does not move and has no coordinates.
   Part& fix();
-  /// Prescribes the motion of the part. The motion also sets its position and orientation. The part has no
+  /// Prescribes the motion of the part, including the position and orientation at time 0. The part has no
   /// coordinates.
   Part& prescribe(PrescribedMotion motion);
 
@@ -89,7 +94,8 @@ class PartDescription {
   /// The prescribed motion; nullptr if there is none.
   const PrescribedMotion* motion() const { return motion_ ? &*motion_ : nullptr; }
   bool shell() const { return shell_; }
-  /// kg/m^3 of a solid, kg/m^2 of a shell.
+  /// The density that the constructor got: kg/m^3 of a solid, kg/m^2 of a shell. mass() and inertia() do not
+  /// change this value.
   double density() const { return density_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
@@ -100,15 +106,15 @@ class PartDescription {
   const Eigen::Quaterniond& R0() const { return R0_; }
   const Vec3<double>& c0_dot() const { return c0_dot_; }
   const Vec3<double>& omega0() const { return omega0_; }
-  /// Number of dynamic global parameters q_s.
+  /// Number of dynamic global parameters q_s; 0 if fixed().
   int n_s() const { return fixed_ ? 0 : parameters_.n_dynamic(); }
-  /// Whether nothing deforms: no parameter is dynamic, and there is no local deformation.
+  /// Whether the part is rigid: no parameter is dynamic, and there is no local deformation.
   bool rigid() const { return parameters_.n_dynamic() == 0 && !local_settings_; }
   /// Whether s is linear in q_s, so that J never changes: all dynamic parameters are lengths in which the
   /// shape is linear, and no link of the chain acts.
   bool linear() const;
-  /// Throws std::invalid_argument if the part cannot have the elastic material that was set. prepare() checks
-  /// this too.
+  /// Throws std::invalid_argument if the part cannot have the elastic material that elasticity() set.
+  /// prepare() calls this function too.
   void check_elasticity() const;
 
   /// A Model keeps a copy of this token while it uses the part. The part cannot be changed as long as copies
@@ -121,12 +127,13 @@ class PartDescription {
                   const std::vector<LinkInfo>& links);
   ~PartDescription() = default;
 
-  /// Throws std::invalid_argument if the description contradicts itself. prepare() calls it before it
-  /// computes constants.
+  /// Throws std::invalid_argument if the description contradicts itself. prepare() calls this function before
+  /// it computes the constants.
   void check() const;
   /// Returns the Part of which this object is the base class.
   const Part& part() const;
   Part& part();
+  /// Throws std::invalid_argument with the name of the part and the text `what`.
   [[noreturn]] void refuse(const std::string& what) const;
 
   // Settings that only prepare() needs.
@@ -144,11 +151,13 @@ class PartDescription {
   void update_parameters() { parameters_.update(); }
 
  private:
-  /// Runs before every change. Throws std::logic_error while a Model uses the part.
+  /// Marks the description as changed; every setter calls this function first. Throws std::logic_error while
+  /// a Model uses the part.
   void change();
-  /// Checks limits, rest value and initial value of a dynamic parameter, and that a frozen one is constant.
+  /// Throws if the limits, the rest value or the initial value of a dynamic parameter are not admissible, or
+  /// if the rest value of a frozen parameter changes in time.
   void check_parameter(const Parameter& p) const;
-  /// Throws if the limits exceed the allowed range of the parameter, see limits().
+  /// Throws if the limits exceed the dynamic range of the parameter, see limits().
   void check_limits(const Parameter& p) const;
   /// Throws if the strain energy of the material is not defined while parameter number i changes.
   void check_elastic_parameter(int i) const;

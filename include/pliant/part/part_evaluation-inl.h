@@ -1,5 +1,5 @@
-// Function bodies of PartEvaluation for geometry: reference shape s, Eq. (3), gradients, normals, and the
-// inverse map from positions to material points.
+// Function bodies of PartEvaluation for geometry: the reference shape s, Eq. (3), gradients, normals, and the
+// map from positions to material points.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace pliant {
 
 namespace detail {
 
-/// Some gradients are singular at a tip. They are evaluated below the tip, at z (1 - kBelowTip). Points whose
-/// relative distance from an end of the body is less than kBelowTip are at this end.
+/// Where a gradient is singular at a tip of the body, the gradient is evaluated at z (1 - kBelowTip) instead.
+/// A point counts as a point at an end of the body if 1 - |z|/h <= kBelowTip, with the half height h.
 inline constexpr double kBelowTip = 1e-9;
 
-/// Evaluates the positions of material points, four at a time. Calls store(i, jet, lane) for each point i;
-/// its position is in lane `lane` of the jet. S is the scalar of the jet.
+/// Evaluates the positions of material points, four at a time. Calls store(i, jet, lane) for each point
+/// number i; lane `lane` of the jet has the position of this point. S is the scalar of the jet.
 template <class S, class P, class Store>
 void evaluate_positions(const PartEvaluation& part, const std::vector<Material<double>>& at,
                         const ParameterValues<P>& values, Store&& store) {
@@ -122,8 +122,8 @@ PLIANT_INLINE Vec3<double> PartEvaluation::undeformed_point(const Vec3<double>& 
   const double* a = values.b.data();
   const double h = shape().half_height(a);
   if (parameters().all_links().empty() || std::abs(e[2]) < (1 - detail::kBelowTip) * h) return e;
-  // p is at an end of the body. If the chain maps the whole end section to p (a tip), return the pole of the
-  // shape.
+  // p is at an end of the body. If the chain maps the whole end section to p (a tip), the pole of the shape
+  // is returned, because the inverse of the chain is not unique there.
   const Vec3<double> end = shape().e(material_at(std::copysign(kPi / 2, e[2]), 0), a);
   Jet<Pack> jet;
   for (int r = 0; r < 3; ++r) jet.s[r] = Pack(end[r]);
@@ -156,7 +156,7 @@ PLIANT_INLINE std::vector<Vec3<double>> PartEvaluation::normals(const std::vecto
   for (std::size_t i = 0; i < at.size(); ++i)
     e.col(static_cast<Eigen::Index>(i)) = shape().e(at[i], values.b.data());
   const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
-  // Barr 1984: n ~ det(F) F^-T n_e.
+  // Barr 1984: the normal is parallel to det(F) F^-T n_e, with the normal n_e of the undeformed shape.
   auto outward = [&](const Mat3<double>& F, const Vec3<double>& from) {
     return Vec3<double>(detail::part_cofactors(F) * shape().gauge_gradient(from, values.b.data()));
   };

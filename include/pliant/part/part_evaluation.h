@@ -1,7 +1,7 @@
 // The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
-// J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the inverse map, and the mass matrix M and the inertial
-// forces g_q of Eq. (11). Part (part.h) derives from it. The function bodies are in part_evaluation-inl.h
-// (geometry) and inertia-inl.h (M and g_q).
+// J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the material point at a position, and the mass matrix M and
+// the inertial forces g_q of Eq. (11). Part (part.h) derives from PartEvaluation. The function bodies are in
+// part_evaluation-inl.h (geometry) and inertia-inl.h (M and g_q).
 #pragma once
 
 #include <memory>
@@ -19,20 +19,22 @@ class PartEvaluation : public PartDescription {
  public:
   virtual ~PartEvaluation() = default;
 
-  // Dynamics. q_s and q_s_dot are the dynamic parameters and their rates, omega (rad/s) is in the body frame.
-  // The overloads for Dual<1> also compute the derivative along the direction of the dual parts.
+  // Dynamics. q_s and q_s_dot are the dynamic parameters and their rates; the angular velocity omega (rad/s)
+  // is in the body frame. The overloads for Dual<1> also compute the derivatives along the direction of the
+  // dual parts of the arguments.
 
-  /// Computes the mass matrix and the inertial forces, Eq. (11), over (c, omega, q_s) at d = 0. A rigid part
-  /// has the constant M of its rest shape. If s is linear in q_s, moments replace the sums over the mass
-  /// points.
+  /// Computes the mass matrix and the inertial forces, Eq. (11), over (c, omega, q_s) without local
+  /// deformation (d = 0). M of a rigid part is constant. If s is linear in q_s, moments replace the sums over
+  /// the mass points. Valid after Part::prepare().
   void evaluate_inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes only g_q, for a rigid part, from the fields M and moment of out. These must already have the
-  /// values of the part. The fields other than g_q do not change.
+  /// Computes g_q of a rigid part from out.M and out.moment, which must already have the values of the part.
+  /// Only out.g_q changes.
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
-  /// Computes position, J and rates of material points in the body frame. out: one PointJet for each point.
+  /// Computes position, J, J q_s_dot and Jdot q_s_dot of material points in the body frame, without local
+  /// deformation. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
               const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
   void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
@@ -40,26 +42,30 @@ class PartEvaluation : public PartDescription {
 
   // Geometry, in the body frame. values: all parameters, frozen ones included.
 
-  /// Returns the reference shape s of material points, m: 3 x n.
+  /// Returns the reference shape s of n material points, m: 3 x n.
   Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
-  /// Returns the derivative of s along the direction of the dual parts of the values: 3 x n.
+  /// Returns the derivatives of s of n material points along the direction of the dual parts of the values:
+  /// 3 x n.
   Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
                            const ParameterValues<Dual<1>>& values) const;
-  /// Returns the derivative dT/de of the chain of deformations at undeformed positions e (3 x n): one 3 x 3
-  /// matrix for each position.
+  /// Returns the derivative dT/de of the chain of deformations T at n undeformed positions e (3 x n, m): one
+  /// 3 x 3 matrix for each position.
   std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
                                            const ParameterValues<double>& values) const;
   /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where the derivatives of the
   /// trigonometric map are infinite (exponents below 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
   /// Returns the inside-outside function at a position p (m, body frame): w - 1, where w is the radial
-  /// coordinate of the material point at p. It is zero on the surface and negative inside.
+  /// coordinate of the material point at p. The value is 0 on the surface, negative inside and positive
+  /// outside.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
-  /// Returns the gradient of the inside-outside function (1/m); at the tip of a full taper the limit along z.
+  /// Returns the gradient of the inside-outside function at a position p, 1/m. At the tip of a full taper the
+  /// result is the limit along z.
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Returns the unit outward normal at a material point of the surface. Where the deformation maps a whole
   /// section to one point (the tip of a full taper), the result is the limit along z.
   Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
+  /// Returns normal() of each material point.
   std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
                                     const ParameterValues<double>& values) const;
   /// Returns whether a piece of the surface is turned inside out at these values of the dynamic parameters;
@@ -68,10 +74,10 @@ class PartEvaluation : public PartDescription {
   /// Returns the material point at the position p (m, body frame).
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
-  // The kernels, for batches of material points. Primitive implements them.
+  // The kernels, for batches of material points. Primitive implements these functions.
 
-  /// Computes s, and as batch.level requires J, J q_s_dot and Jdot q_s_dot, of material points
-  /// (deform/jet.h).
+  /// Computes s of batch.count packs of material points and, if batch.level requires them, J, J q_s_dot and
+  /// Jdot q_s_dot (deform/jet.h).
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
   /// Computes the jets of jets() above with their derivatives along the dual parts of the values and of the
@@ -86,10 +92,10 @@ class PartEvaluation : public PartDescription {
  protected:
   using PartDescription::PartDescription;
 
-  /// Applies the chain of deformations alone. On entry the jets have undeformed positions s and columns J;
-  /// all parameters are constant.
+  /// Applies the chain of deformations to jets that contain undeformed positions s and columns J. All
+  /// parameters are constants here.
   virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
-  /// Applies the inverse of the chain to a position.
+  /// Returns the position that the chain maps to p (m, body frame).
   virtual Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
   PartConstants constants_;
@@ -98,7 +104,7 @@ class PartEvaluation : public PartDescription {
   template <class P>
   void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                            Inertia<P>& out, Counters& counters) const;
-  /// Returns the undeformed position that the chain maps to p.
+  /// Returns the undeformed position that the chain maps to p; at a tip the pole of the shape.
   Vec3<double> undeformed_point(const Vec3<double>& p, const ParameterValues<double>& values) const;
 };
 

@@ -1,4 +1,5 @@
-// Prescribed motion: position, orientation, velocity and acceleration of a frame as functions of time.
+// Prescribed motion: position and orientation of a frame as functions of time, with velocity and
+// acceleration.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,15 +14,15 @@ struct MovingFrame {
   Mat3<double> R;                 ///< body to world
   Vec3<double> omega, omega_dot;  ///< angular velocity (rad/s) and acceleration (rad/s^2)
 
-  /// Returns the velocity (m/s) of the point of the frame at c + r.
+  /// Returns the velocity (m/s, world) of the point at c + r that is fixed in the frame.
   Vec3<double> velocity(const Vec3<double>& r) const { return c_dot + omega.cross(r); }
-  /// Returns the acceleration (m/s^2) of the point of the frame at c + r.
+  /// Returns the acceleration (m/s^2, world) of the point at c + r that is fixed in the frame.
   Vec3<double> acceleration(const Vec3<double>& r) const {
     return c_ddot + omega_dot.cross(r) + omega.cross(omega.cross(r));
   }
 };
 
-/// A path of the origin, and a rotation about a fixed axis.
+/// A motion that consists of a path of the origin and a rotation about an axis of fixed direction.
 struct PrescribedMotion {
   TimeVector position;                                              ///< of the origin of the frame, m, world
   Vec3<double> axis = {0, 0, 1};                                    ///< unit vector, world
@@ -37,9 +38,9 @@ struct PrescribedMotion {
   /// Returns the orientation at time t, body to world.
   Eigen::Quaterniond orientation_at(double t) const;
 
-  /// Returns the mean velocity of the origin from t to t + h (s) and an upper estimate of the difference
-  /// between this mean and the velocities of all points at most `reach` (m) away from the origin, both in
-  /// m/s.
+  /// Returns the mean velocity of the origin from t to t + h (s), and an estimate of the largest difference
+  /// between this mean and the velocity of a point at most `reach` (m) away from the origin. Both are in m/s.
+  /// The estimate uses samples at kMoments (math/time_function.h).
   TimeVector::MeanRate over(double t, double h, double reach) const;
 };
 

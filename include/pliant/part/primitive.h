@@ -1,10 +1,10 @@
 // Primitive<Shape, GlobalDeform>: the class of a part, Eq. (3),
 //   s = T(e(u; a); b)
-// Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
-// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; dual
-// numbers give the derivatives: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot qs_dot, a term of
-// g_q in Eq. (11). Primitive evaluates s, J and the rates for batches of material points. Everything else is
-// in Part, which does not depend on the types Shape and GlobalDeform.
+// Shape gives e, a solid primitive with parameters a (include/pliant/shape). GlobalDeform gives T, a chain of
+// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). e and T are formulas. Dual
+// numbers and Taylor numbers give the derivatives: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot
+// qs_dot, a term of g_q in Eq. (11). Primitive evaluates s, J and the rates for batches of material points.
+// All other code is in Part, which does not depend on the types Shape and GlobalDeform.
 //
 //   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
 //   body.place({0, 0, 1}).rest({{"a3", 2.0}}).stiffness({{"bend.angle", 50.0}});
@@ -53,13 +53,13 @@ class Primitive final : public Part {
       chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
 
-  /// Applies T alone to jets that contain undeformed positions and columns J. All parameters are constant.
+  /// Applies T to jets that contain undeformed positions s and columns J. All parameters are constants here.
   void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const override {
     static constexpr bool none[kMaxParameters] = {};
     const LinkParameters<double> constant{values.b.data(), values.b_dot.data(), none};
     chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
-  /// Applies the inverse of T to a position.
+  /// Returns the position that T maps to p.
   Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
   }

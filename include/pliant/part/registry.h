@@ -22,9 +22,9 @@ struct DeformationInfo {
 /// Returns every deformation, in the order of AllDeforms.
 const std::vector<DeformationInfo>& all_deformations();
 
-/// Makes a part of the named shape with the named chain of deformations, in that order. density: kg/m^3 of a
-/// solid, kg/m^2 of a shell. Throws std::invalid_argument for an unknown name; the message lists the known
-/// names.
+/// Returns a new part with the named shape and a chain of the named deformations, applied in this order.
+/// density: kg/m^3 of a solid, kg/m^2 of a shell. Throws std::invalid_argument for the unknown name of a
+/// shape or deformation; the message lists the known names.
 std::unique_ptr<Part> make_part(const std::string& name, const std::string& shape,
                                 const std::vector<std::string>& deformations, double density);
 

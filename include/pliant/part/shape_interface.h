@@ -1,6 +1,6 @@
-// ShapeInterface: the interface of a shape with virtual functions, for computations when a part is prepared,
-// for contact search and for output. The dynamics uses templates instead (shape_jets.h). shape/shape.h
-// documents the members of a shape; the optional ones have defaults here.
+// ShapeInterface: the interface of a shape with virtual functions, for Part::prepare(), contact search and
+// output. The dynamics uses templates instead (shape_jets.h). shape/shape.h documents the members of a shape.
+// Optional members have defaults here.
 #pragma once
 
 #include <memory>
@@ -29,14 +29,15 @@ class ShapeInterface {
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
   /// Returns h, half the extent along z, m. Global deformations use zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
-  /// Returns w of the material point at x: 1 on the surface, below 1 inside.
+  /// Returns w of the material point at x (m): 1 on the surface, below 1 inside, above 1 outside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the gradient of the gauge, 1/m. It points along the outward normal.
+  /// Returns the gradient of gauge() at x (m), 1/m. On the surface it has the direction of the outward
+  /// normal.
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point (u, v, w) with e(u, v, w) = x.
+  /// Returns the material point (u, v, w) with e(u, v, w) = x (m).
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point of the surface for a mesh vertex. g: direction of the vertex, or for a
-  /// torus (angle around the tube, angle around z, 0), rad.
+  /// Returns the material point of the surface for a mesh vertex. g: direction of the vertex in the mesh
+  /// pattern, or for MeshPattern::torus (angle around the tube, angle around z, 0), rad.
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
   /// Returns the semi-axes if the shape is an ellipsoid, m; else nullopt.
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
@@ -47,41 +48,42 @@ class ShapeInterface {
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
   /// Whether the strain stays bounded when an exponent changes. For the trigonometric map of superquadrics
-  /// the strain is unbounded: if eps changes from eps_0 to p eps_0 with p < 1, the deformation gradient grows
-  /// as |x|^(p - 1) towards a coordinate plane x = 0.
+  /// the strain is unbounded: if an exponent eps changes from eps_0 to p eps_0 with p < 1, the deformation
+  /// gradient grows as |x|^(p - 1) towards a coordinate plane x = 0.
   virtual bool bounded_exponents() const = 0;
-  /// Whether e is linear in the parameters that are lengths, for all values of the others.
+  /// Whether e is linear in the parameters that are lengths, for all values of the other parameters.
   virtual bool linear_lengths() const = 0;
 
-  // Quadrature. The rest map maps (u, v, w) to the quadrature points of the shape at rest. It is e of the
-  // shape itself, or e of another shape that covers the same solid (member RestMap).
+  // Quadrature. The rest map maps (u, v, w) to the quadrature points of the shape at rest. The rest map is e
+  // of this shape, or e of another shape with an equal solid (member RestMap).
 
   /// Returns the rest map and its derivatives, as tangents() does for e.
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
   /// Returns the material point of the shape whose position is that of the rest map at m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns the panels of the quadrature along u (profile) and along v (ring). dynamic_exponents: whether an
-  /// exponent is a degree of freedom.
+  /// Returns the panels of the quadrature along u. dynamic_exponents: whether an exponent is a degree of
+  /// freedom.
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
+  /// Returns the panels of the quadrature along v. The argument is that of profile().
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
   /// Returns the exponent eps of the superellipse (C_v^eps, S_v^eps) that a ring (u, w) = const of the rest
   /// map follows, with C_v = cos v and S_v = sin v; 1 for an ellipse.
   virtual double ring_exponent(ShapeParameters a) const = 0;
   /// Whether the plane sections z = const of the shape are known in closed form.
   virtual bool has_sections() const = 0;
-  /// Returns the area and the mean squares of the plane section at zeta = z / h. gap: 1 - |zeta|. The result
-  /// has a meaning only if has_sections().
+  /// Returns the area and the means of x^2 and y^2 of the plane section at zeta = z / h. gap: 1 - |zeta|.
+  /// Must be called only if has_sections().
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
-  /// Returns the panels of the quadrature over plane sections along zeta.
+  /// Returns the panels of the quadrature along zeta over plane sections; none without has_sections().
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
 };
 
-/// Returns the material point at x (m) of a shape that has no label function. Newton's method solves
-/// e(u, v, w) = x and starts in the direction of x. Throws std::runtime_error if the method does not
-/// converge: the shape is not star-shaped and needs a label function.
+/// Returns the material point at x (m) of a shape that has no label function; for x = 0 the centre w = 0.
+/// Newton's method solves e(u, v, w) = x and starts in the direction of x. Throws std::runtime_error if the
+/// method does not converge. A shape that is not star-shaped needs a label function.
 Material<double> generic_label(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a);
 /// Returns the gradient of the radial coordinate w at x (m), 1/m, for a shape that has no label function. At
-/// the poles it is the limit along a meridian.
+/// the poles the result is the limit along a meridian. Throws as generic_label() does.
 Vec3<double> generic_gauge_gradient(const ShapeInterface& shape, const Vec3<double>& x, ShapeParameters a);
 
 namespace detail {

@@ -1,6 +1,6 @@
-// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with the first and second
-// derivatives along a + t a_dot. The Jacobian de/da for the dynamic parameters gives the first columns of J,
-// Eq. (9); the links of the chain then transform these columns (deform/link.h).
+// The kernel of a shape: the positions e(u; a), Eq. (3), of a batch of material points u, with first and
+// second derivatives by t along the parameters a + t a_dot. The Jacobian de/da for the dynamic parameters
+// gives the first columns of J, Eq. (9). The links of the chain then transform these columns (deform/link.h).
 #pragma once
 
 #include <type_traits>
@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-/// Fills the batch if parameter number k of the shape is its only dynamic one. At Level::rates one Taylor2
-/// number in a_k gives e, J, s1 and s2; at Level::jacobian a dual number gives e and J.
+/// Fills the batch if parameter a_k is the only dynamic parameter of the shape. At Level::rates one Taylor2
+/// number in a_k gives e, J, s1 and s2; at Level::jacobian a dual number in a_k gives e and J.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets_alone(int k, const LinkParameters<P>& parameters,
                                        const Material<U>* material, JetBatch<S>& batch) {
@@ -43,9 +43,10 @@ template <class Shape, class P, class S, class U>
   batch.n_columns = 1;
 }
 
-/// Fills the batch with e, J and the rates s1 and s2, as far as batch.level requires, and sets the number of
-/// columns of J. If no parameter is dynamic, or at Level::position, s1 and s2 are zero and J has no columns.
-/// P: scalar of the parameters; S: scalar of the jets; U: scalar of the material points.
+/// Fills the batch with e and, if batch.level requires them, J and the rates s1 = J a_dot and s2 = Jdot
+/// a_dot. Sets the number of columns of J. If no parameter of the shape is dynamic, or at Level::position, s1
+/// and s2 are zero and J has no columns. P: scalar of the parameters; S: scalar of the jets; U: scalar of the
+/// material points.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
                                  JetBatch<S>& batch) {
@@ -106,7 +107,7 @@ template <class Shape, class P, class S, class U>
   batch.n_columns = n_dynamic;
 }
 
-/// Returns the half height h(a) with its first and second derivatives along a + t a_dot and its derivatives
+/// Returns the half height h(a), its first and second derivatives by t along a + t a_dot, and its derivatives
 /// by the dynamic parameters.
 template <class Shape, class P>
 HalfHeight<P> half_height_jet(const LinkParameters<P>& parameters) {

@@ -1,4 +1,4 @@
-// Jets of many material points as structures of arrays: all x, then all y, then all z.
+// Jets of many material points as structures of arrays: the x components of all points, then y, then z.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-/// The arrays that receive the jets of n points: 3n numbers each, and 3n numbers for each dynamic parameter
-/// in J.
+/// The arrays that receive the jets of n points. s, s1 and s2 have 3n numbers; J has 3n numbers for each
+/// dynamic parameter.
 struct JetArrays {
   Eigen::Index n;
   double* s;
-  double *s1, *s2;  ///< not written if q_s_dot is zero
+  double *s1, *s2;  ///< not written if q_s_dot is zero; may be nullptr then
   double* J;
 };
 

@@ -1,5 +1,5 @@
 // The deformation gradient F = ds/dX and its derivatives dF/dq_s at quadrature points of the rest body, in
-// packs of four.
+// packs of four. X is the position in the rest body.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace pliant::strain {
 
-/// Packs per block.
+/// Number of packs in a block.
 inline constexpr int kBlock = 4;
 
 /// Values of the parameters as dual numbers. Part::jets() needs this type if the material points are dual
@@ -21,7 +21,7 @@ struct Block {
   std::array<std::array<Mat3<Pack>, kMaxGlobal>, kBlock> dF;
 };
 
-/// A range of packs of quadrature points at given values of the parameters.
+/// The packs number `first` to `first` + `count` - 1 of quadrature points, at given values of the parameters.
 struct Packs {
   const Part& part;
   const DualValues& values;
@@ -46,8 +46,8 @@ inline void set_column(Mat3<Pack>& to, int r, const Vec3<Dual<1, Pack>>& from) {
   for (int i = 0; i < 3; ++i) to(i, r) = from[i].d[0];
 }
 
-/// Computes F of a block and, unless the level is Level::position, dF for the n_s dynamic parameters. A shell
-/// has no third direction; its third columns are zero.
+/// Computes F of a block and, unless the level is Level::position, dF for the n_s dynamic parameters. For a
+/// shell, which has two directions, the third columns are zero.
 inline void evaluate(const Packs& packs, int n_s, Level level, Block& out) {
   const auto columns = static_cast<std::size_t>(level == Level::position ? 0 : n_s);
   for (std::size_t i = 0; packs.points.directions < 3 && i < static_cast<std::size_t>(packs.count); ++i) {
@@ -61,7 +61,7 @@ inline void evaluate(const Packs& packs, int n_s, Level level, Block& out) {
   });
 }
 
-/// Returns sum_k c_k A_k.
+/// Returns sum_k c_k A_k. c: vector of numbers, one for each dynamic parameter.
 template <class C>
 Mat3<Pack> combine(const std::array<Mat3<Pack>, kMaxGlobal>& A, const C& c) {
   Mat3<Pack> sum = Mat3<Pack>::Constant(Pack(0.0));

@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// Makes a part of shape number I of AllShapes. CMake generates one source file for each I from
+/// Returns a new part of shape number I of AllShapes. CMake generates the source file of each I from
 /// primitive_instance.cpp.in.
 template <int I>
 std::unique_ptr<Part> make_primitive(std::string name, double density, AnyChain chain);

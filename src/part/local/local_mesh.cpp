@@ -45,9 +45,9 @@ Vec<double, 10> moments(const Inertia<double>& whole) {
   return f;
 }
 
-/// Changes nodal masses by the smallest relative amounts that give them the mass, the centre and the second
-/// moments of the part. Returns the largest error of a moment, relative to the largest value that the moment
-/// could have.
+/// Changes the nodal masses so that they have the mass, the centre and the second moments of the part. The
+/// relative changes are the smallest ones in the mean square over the mass. Returns the largest remaining
+/// error of a moment, relative to the mass times the largest nodal coordinates in this moment.
 double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>& mass) {
   const Eigen::Index n = X.rows();
   const Vec<double, 10> unit = moments(Vec3<double>(X.cwiseAbs().colwise().maxCoeff().transpose()));
@@ -66,7 +66,7 @@ double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>&
   return (wanted - F * mass).cwiseAbs().maxCoeff() / whole.mass;
 }
 
-/// Returns the weights of the point of a triangle that is nearest to x.
+/// Returns the barycentric weights of the point of a triangle that is nearest to x.
 Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<double>, 3>& corner) {
   const Vec3<double> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], r = x - corner[0];
   const double a = e1.dot(e1), b = e1.dot(e2), c = e2.dot(e2), d = e1.dot(r), e = e2.dot(r);
@@ -89,7 +89,7 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   return best;
 }
 
-/// Returns the weights of a position x of a shell: the weights of the nearest point of the triangles.
+/// Returns the weights of a position x of a shell: those of the point of all triangles that is nearest to x.
 NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   NodeWeights best;
   double least_distance = std::numeric_limits<double>::infinity();
@@ -112,15 +112,15 @@ NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   return best;
 }
 
-/// Returns the weights of a position x in an element. L: start of the search, the barycentric coordinates of
-/// x in the straight element.
+/// Returns the weights of a position x in an element. L: the barycentric coordinates of x in the straight
+/// element with the same corners, at which the search starts.
 template <class Element>
 NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<double>& x,
                        std::array<double, 4> L) {
   std::array<Vec3<double>, Element::n_nodes> X;
   for (int k = 0; k < Element::n_nodes; ++k)
     X[static_cast<std::size_t>(k)] = mesh.X.row(mesh.tetrahedra(k, element)).transpose();
-  // Newton's method. It needs one iteration if the element is straight.
+  // Newton's method with a fixed number of iterations. One iteration suffices if the element is straight.
   constexpr int kIterations = 10;
   for (int i = 0; i < kIterations; ++i) {
     const TetrahedronPoint at{L, 0};
@@ -140,8 +140,8 @@ NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<d
   return at;
 }
 
-/// Returns the weights of a position x of a solid over the nodes of one element. It is the element in which
-/// the smallest barycentric coordinate of x is largest: the element that contains x, if there is one.
+/// Returns the weights of a position x of a solid over the nodes of one element: the element in which the
+/// smallest barycentric coordinate of x is largest. If x is in a straight element, this is that element.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Index in = 0;
   std::array<double, 4> L{};
@@ -190,7 +190,7 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.nodes = surface.material();
     mesh.triangles = surface.triangles();
   } else {
-    // Modes use the consistent mass. It is positive definite without nodes on faces and in the middle.
+    // Modes use the consistent mass matrix, which is positive definite for elements with 10 nodes.
     const bool modes = settings.basis == LocalSettings::Basis::modes;
     const Solid solid(part, settings.resolution,
                       settings.order == 1 ? Solid::Order::linear

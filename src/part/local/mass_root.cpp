@@ -11,7 +11,7 @@ MassRoot::MassRoot(Eigen::SparseMatrix<double> nodes, const VecX<double>& own)
     throw std::invalid_argument("its mass matrix is not positive definite");
 }
 
-// P M P^T = L L^T, therefore C = L^T P.
+// The factorisation is P M P^T = L L^T with a permutation P. Therefore C = L^T P.
 
 MatX<double> MassRoot::root_of_nodes(const MatX<double>& d) const {
   return factor_.matrixU() * MatX<double>(factor_.permutationP() * d);

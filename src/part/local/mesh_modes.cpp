@@ -1,5 +1,6 @@
-// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0, the
-// lowest modes x are the eigenvectors with the largest eigenvalues nu = 1/(omega^2 + sigma) of
+// The lowest modes of a mesh under the reference conditions W^T d = 0, W = M G0, at rest. With M = C^T C,
+// x = C d and an orthonormal basis Q of the columns of C G0, the lowest modes x are the eigenvectors with the
+// largest eigenvalues nu = 1/(omega^2 + sigma) of
 //   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
 // Here K is the stiffness, M the mass matrix, and sigma a small shift (shift_of()) that makes K + sigma M
 // positive definite. Curved elements use the consistent M: the error of omega is positive and of fourth order
@@ -30,10 +31,10 @@ namespace {
 
 using Sparse = SparseMatrix;
 
-/// Up to this number of coordinates the dense solver is faster.
+/// Up to this number of coordinates, the dense eigenvalue solver is faster than the iterative solver.
 constexpr Eigen::Index kDense = 400;
-/// kMaxCoordinates: maximum number of displacement components of the nodes. The factor of a larger matrix
-/// needs gigabytes. kMaxNumbers: maximum number of entries of fields and modes.
+/// kMaxCoordinates: maximum number of displacement components of the nodes. The factor of a larger stiffness
+/// matrix needs gigabytes. kMaxNumbers: maximum number of entries of the fields over nodes.
 constexpr Eigen::Index kMaxCoordinates = 120'000;
 constexpr double kMaxNumbers = 5e7;
 
@@ -51,7 +52,7 @@ Sparse mass_of(const LocalMesh& mesh) {
   return M;
 }
 
-/// Throws LocalFault if there is no law, or a law that is not quadratic in d.
+/// Throws LocalFault if there is no law, or if a law is not quadratic in d.
 void check_laws(const std::string& part_name, const MeshEnergies& energies, const LocalSettings& settings) {
   for (std::size_t k = 0; k < energies.all.size(); ++k)
     if (energies.all[k]->of() != NodalEnergy::Of::displacement)
@@ -84,8 +85,8 @@ MatX<double> basis_of_conditions(const Part& part, const LocalMesh& mesh, const 
   return orthonormal_basis(mass.root(all), dependent);
 }
 
-/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface
-/// that the library Spectra requires.
+/// The operator (K' + sigma I)^-1, K' = C^-T K C^-1, restricted to the orthogonal complement of Q. The class
+/// has the interface that the library Spectra requires.
 class Flexibility {
  public:
   using Scalar = double;
@@ -102,6 +103,7 @@ class Flexibility {
     inner_.compute(Q.transpose() * Y_);
     positive_ = inner_.info() == Eigen::Success;
   }
+  /// Whether K + sigma M is positive definite and Q^T Y is regular.
   bool exists() const { return positive_; }
   Eigen::Index rows() const { return Q_.rows(); }
   Eigen::Index cols() const { return Q_.rows(); }
@@ -127,8 +129,8 @@ class Flexibility {
   Eigen::LDLT<MatX<double>> inner_;
 };
 
-/// Returns the shift sigma: a tenth of the smallest omega^2 (Rayleigh quotient) among displacements that are
-/// quadratic in X and satisfy the conditions.
+/// Returns the shift sigma: a tenth of the smallest positive Rayleigh quotient omega^2 of 18 displacement
+/// fields. Each field is a product X_j X_k along x, y or z, projected on the complement of the conditions.
 double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const MatX<double>& Q) {
   const Eigen::Index n = mesh.X.rows();
   double min_omega2 = std::numeric_limits<double>::infinity();
@@ -146,7 +148,7 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
   return 0.1 * min_omega2;
 }
 
-/// Returns the lowest modes from all eigenvectors of K' (see Flexibility), for few coordinates.
+/// Returns the lowest `count` modes x, from all eigenvectors of K' (see Flexibility) on the complement of Q.
 MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>& Q, Eigen::Index count) {
   const MatX<double> Z = complement_basis(Q), d = elasticity.mass.solve(Z);
   return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
@@ -160,7 +162,7 @@ struct MeshProblem {
   std::string part_name = "part '" + part.name() + "': ";
 
   Eigen::Index count() const { return settings.modes; }
-  /// Throws std::invalid_argument for too few or too many modes or nodes.
+  /// Throws std::invalid_argument for less than one mode, and for too many modes or nodes.
   void check_size() const;
 };
 
@@ -201,13 +203,13 @@ void MeshProblem::check_size() const {
                                 std::to_string(static_cast<long>(kMaxNumbers / 3)));
 }
 
-/// Modes over the coordinates of a mesh, one in each column of d, by increasing frequency.
+/// Modes over the coordinates of a mesh, one in each column of d, sorted by increasing frequency.
 struct MeshModes {
   MatX<double> d;
   VecX<double> omega2;
 };
 
-/// Returns the modes that diagonalise the stiffness in the span of x. Their energies have an error that is
+/// Returns the modes that diagonalise the stiffness in the span of the columns of x. The error of omega^2 is
 /// quadratic in the error of x.
 MeshModes diagonalised(const MeshElasticity& elasticity, const MatX<double>& x) {
   const MatX<double> d = elasticity.mass.solve(x);
@@ -222,7 +224,8 @@ auto nodal_part(const MeshModes& modes, Eigen::Index j, Eigen::Index n_nodes) {
 }
 
 /// Returns scalar fields over nodes (columns) that span the constant, X and the components of the modes. The
-/// fields are orthogonal over the mass, and the integral of the square of each is the mass of the part.
+/// fields are orthogonal over the mass, and the integral of the square of each field over the mass is the
+/// mass of the part.
 MatX<double> fields_of(const LocalMesh& mesh, const MassRoot& root, const MeshModes& modes) {
   constexpr double dependent = 1e-10;  // see orthonormal_basis()
   const Eigen::Index n_nodes = mesh.X.rows(), count = modes.d.cols();
@@ -233,7 +236,7 @@ MatX<double> fields_of(const LocalMesh& mesh, const MassRoot& root, const MeshMo
          root.solve_of_nodes(orthonormal_basis(root.root_of_nodes(fields), dependent));
 }
 
-/// Returns the fields phi at a material point from those at nodes.
+/// Returns the fields phi at a material point, interpolated from the nodes; empty for a point inside a shell.
 NodeWeights fields_at(const Part& part, const LocalMesh& mesh, const MatX<double>& phi,
                       const Material<double>& m) {
   const NodeWeights among = mesh_weights(part, mesh, m);

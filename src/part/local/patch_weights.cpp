@@ -13,8 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// The nodes within the radius that have a positive measure (area or mass). The weights are phi times
-/// measure, scaled to the sum 1.
+/// The nodes within the radius that have a positive measure (area or mass). The weights are proportional to
+/// phi times the measure; their sum is 1.
 struct Patch {
   std::vector<int> node;
   VecX<double> weight;
@@ -48,15 +48,15 @@ Eigen::Matrix4Xd linear_functions(const Patch& patch, const Nodes& X, const Vec3
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius) {
   constexpr int kMinPatchNodes = 5;
   constexpr double kFlatPatch = 1e-10;  // rank threshold for a patch without thickness
-  constexpr double kMaxWeightSum =
-      4;  // sum of |w|; a larger sum means that weights of both signs nearly cancel
+  constexpr double kMaxWeightSum = 4;   // sum of |w|; with a larger sum, weights of both signs nearly cancel
   const NodeWeights element = mesh_weights(part, mesh, m);
   if (element.node.empty()) return element;
   const Vec3<double> centre = part.s({m}, part.parameters().rest()).col(0);
   const bool on_surface = m.w == 1;
   const Patch patch = patch_around(mesh.X, centre, radius, on_surface ? mesh.areas() : mesh.mass);
-  // The mean of a patch of a curved surface is off the surface. For a solid, nodes inside the body take part
-  // in the correction: they are spread normal to the surface, so that the correction is small.
+  // The mean position of a patch of a curved surface is not on the surface. For a solid, the correction also
+  // changes the weights of nodes inside the body. Because these nodes have different distances from the
+  // surface, a small correction suffices.
   const Patch around = mesh.shell() || !on_surface ? patch : patch_around(mesh.X, centre, radius, mesh.mass);
   if (static_cast<int>(patch.node.size()) < kMinPatchNodes) return element;
   const Eigen::Matrix4Xd f = linear_functions(patch, mesh.X, centre, radius),

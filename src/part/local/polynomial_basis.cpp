@@ -1,6 +1,7 @@
 // Displacement polynomials over the body of a solid. The fields phi = T L are combinations of the Legendre
-// products L. These fields are orthonormal over the mass, and d phi / dX_r = Delta_r phi. With the volume V
-// and Lame's constants lambda and mu, the stiffness of linear elasticity is then
+// products L. The mean of phi_a phi_b over the volume is delta_ab, and d phi / dX_r = Delta_r phi with a
+// matrix Delta_r. With the volume V and Lame's constants lambda and mu, the stiffness of linear elasticity is
+// then
 //   K_rs = V (lambda Delta_r Delta_s^T + mu Delta_s Delta_r^T + delta_rs mu sum_t Delta_t Delta_t^T),
 // without a quadrature of gradients.
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace pliant {
 
 namespace {
 
-/// Maximum number of values of all fields at all points of a basis: 400 MB.
+/// Maximum number of values of all fields at all points of a basis. These values need 400 MB.
 constexpr double kMaxValues = 5e7;
 
 /// The fields phi = T L.
@@ -32,8 +33,8 @@ struct PolynomialFields {
   MatX<double> at(const Eigen::Matrix3Xd& X) const { return L.values(X) * T.transpose(); }
 };
 
-/// Returns the fields phi = T L: the mean of phi_a phi_b over the body is delta_ab. T is the inverse Cholesky
-/// factor of the Gram matrix of L. A second pass removes the rounding errors of the first.
+/// Returns fields phi = T L for which the mean of phi_a phi_b over the body is delta_ab. T is the inverse
+/// Cholesky factor of the Gram matrix of L. A second pass reduces the rounding errors of the first pass.
 PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const BodyRule& rule) {
   PolynomialFields fields{L, MatX<double>::Identity(L.size(), L.size())};
   const VecX<double> weight = rule.volume / rule.volume.sum();
@@ -54,7 +55,7 @@ PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const 
   return fields;
 }
 
-/// Returns the stiffness matrix of linear elasticity, with the sum of the constants of the laws.
+/// Returns the stiffness matrix K of linear elasticity. Its constants are the sums of those of all laws.
 MatX<double> stiffness(const PolynomialFields& fields, const std::vector<Elasticity>& laws, double volume) {
   const Eigen::Index n = fields.L.size();
   std::array<MatX<double>, 3> gradient;

@@ -9,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns the azimuth (rad) of lattice point (i, j) on the square ring of half side `ring`. Along the ring
-/// the azimuth grows by equal steps.
+/// Returns the azimuth (rad) of lattice point (i, j) on the square ring of half side `ring`. Neighbouring
+/// points of the ring differ by equal steps of azimuth.
 double azimuth(int i, int j, int ring) {
   if (ring == 0) return 0;
   if (i == ring && std::abs(j) < ring) return kPi / 4 * j / ring;
@@ -30,11 +30,12 @@ double exact(double x) {
 Vec3<double> ball_direction(const LatticePoint& p) {
   const auto [i, j, k] = p;
   const int m = ball_shell(p), ring = std::max(std::abs(i), std::abs(j));
-  // Elevation: caps from the pole down to 45 degrees, sides from -45 to 45.
+  // The elevation u is from 45 to 90 degrees on the upper face, from -90 to -45 on the lower face, and from
+  // -45 to 45 on the sides.
   const double u = std::abs(k) == m ? (k > 0 ? 1 : -1) * (kPi / 2 - kPi / 4 * ring / m) : kPi / 4 * k / m;
   const double v = azimuth(i, j, ring);
   double c = exact(std::cos(u)), s = exact(std::sin(u));
-  if (std::abs(k) == m && ring == m) {  // the rim belongs to the side
+  if (std::abs(k) == m && ring == m) {  // on the rim, u is exactly 45 or -45 degrees
     c = std::sqrt(0.5);
     s = k > 0 ? c : -c;
   }

@@ -9,7 +9,7 @@ namespace pliant {
 
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values) {
   if (part.parameters().all_links().empty()) return 1;
-  constexpr int round = 32;  // number of samples along v; samples along u have the numbers -tall to tall
+  constexpr int round = 32;  // number of samples along v; along u there are 2 tall + 1 samples
   const int tall = part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
   Eigen::Matrix3Xd e(3, (2 * tall + 1) * round);
   Eigen::Index column = 0;

@@ -22,8 +22,8 @@ double near(double x, double to) {
   return x + 2 * kPi * std::round((to - x) / (2 * kPi));
 }
 
-/// Returns twice the area on the rectangle: positive if (v, u) have the orientation of the surface seen from
-/// outside.
+/// Returns twice the area of a triangle on the rectangle. The area is positive if the triangle is
+/// counter-clockwise in the plane (v, u).
 double twice_area(const Triangle& t) {
   return (t[1].v - t[0].v) * (t[2].u - t[0].u) - (t[1].u - t[0].u) * (t[2].v - t[0].v);
 }
@@ -31,12 +31,12 @@ double twice_area(const Triangle& t) {
 }  // namespace
 
 ParameterMesh parameter_mesh(const LocalMesh& mesh) {
-  // A torus has no poles: u goes around the tube, so that cos u is negative somewhere.
+  // On a torus, u goes around the tube, so that cos u is negative at some node. A torus has no poles.
   const bool poles = std::none_of(mesh.nodes.begin(), mesh.nodes.end(),
                                   [](const Material<double>& m) { return m.cu.x < 0; });
   std::vector<Triangle> all;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    Triangle corners;  // starting at the pole, if there is one
+    Triangle corners;  // the first corner is the pole, if there is one
     int first = 0;
     for (int k = 0; k < 3; ++k)
       if (poles && mesh.nodes[static_cast<std::size_t>(mesh.triangles(k, t))].cu.x == 0) first = k;

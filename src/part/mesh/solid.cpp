@@ -1,4 +1,4 @@
-// Meshes of tetrahedra of balls and tori.
+// Meshes of tetrahedra for balls and tori.
 #include <pliant/part/mesh/solid.h>
 
 #include <algorithm>
@@ -32,7 +32,8 @@ constexpr double kMaxElements = 2e6;
 struct Corners {
   std::vector<Material<double>> material;
   std::vector<std::array<int, 4>> elements;
-  /// Returns the material point of the surface in the middle of an edge or a triangle, given by its vertices.
+  /// Returns the material point of the surface in the middle of an edge or a triangle. The argument is the
+  /// list of its vertices.
   std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
@@ -92,10 +93,11 @@ Corners ball_corners(const Labels& label, const Surface& surface, int m) {
   return corners;
 }
 
-/// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
-/// triangle are directed from its first node to the second and third, and from the second to the third: along
-/// rings by increasing angle, else inwards. A triangle swept to the next angle around the axis is a prism of
-/// three elements. The Surface cuts the sides of the prisms along the same diagonals.
+/// A section of a tube: rings of 4n points, n = m, m - 2, ... > 0, and the point in the middle. Edges of a
+/// triangle are directed from the first node to the second and third, and from the second to the third. An
+/// edge along a ring has the direction of increasing angle; any other edge points inwards. A triangle and its
+/// copy at the next angle around the axis are the ends of a prism of three elements. The diagonals of the
+/// outer sides of the prisms are those of the Surface.
 struct TubeSection {
   struct Node {
     int ring, step;  ///< n and the number of the point in the ring; ring 0 is the middle
@@ -165,7 +167,7 @@ Corners torus_corners(const Labels& label, const Surface& surface, int m) {
       }
     }
   corners.middle = [label, round, tube](const std::vector<int>& vertices) {
-    // The mean of neighbouring vertex numbers; both angles are periodic.
+    // The mean of the angles of neighbouring vertices, in steps of the grid; both angles are periodic.
     const int from = vertices[0];
     double along = 0, across = 0;
     auto step = [](int p, int q, int n) { return std::remainder(q - p, n); };
@@ -189,7 +191,8 @@ double min_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>& 
   return smallest / (longest * longest * longest);
 }
 
-/// Returns the amplitude of the bubble function of a face or of the middle of an enriched element.
+/// Returns the amplitude of the bubble function of a node of an enriched element: of a face (10 to 13) or of
+/// the middle (14).
 Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
   Vec3<double> size;
   for (int r = 0; r < 3; ++r) {
@@ -200,7 +203,7 @@ Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
   return size;
 }
 
-/// Returns barycentric points at quarters: corners, edges, faces and inside.
+/// Returns the points of an element whose barycentric coordinates are multiples of 1/4.
 std::vector<TetrahedronPoint> spread_points() {
   std::vector<TetrahedronPoint> points;
   constexpr int n = 4;
@@ -226,8 +229,8 @@ class ElementNodes {
       triangle[3 + k] = node_between({triangle[k], triangle[(k + 1) % 3]}, corners_.middle);
     if (enriched) triangle[6] = node_between({triangle[0], triangle[1], triangle[2]}, corners_.middle);
   }
-  /// Fills rows 4 to 9 of an element. The node of an inner edge is in the middle of its ends in the
-  /// undeformed shape.
+  /// Fills rows 4 to 9 of an element. In the undeformed shape, the node of an inner edge is in the middle
+  /// between the ends of the edge.
   void add_edge_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     for (std::size_t k = 0; k < 6; ++k)
       element[static_cast<Eigen::Index>(4 + k)] =
@@ -262,8 +265,8 @@ class ElementNodes {
     return label_.shape.e(material_[static_cast<std::size_t>(node)], label_.a);
   }
   Material<double> at(const Vec3<double>& x) const { return label_.shape.label(x, label_.a); }
-  /// Returns the node between the nodes of an edge or a face. place(ends) gives the material point of a new
-  /// node.
+  /// Returns the node of the edge or face with the corner nodes `ends`. If the node is new, place(ends) gives
+  /// its material point.
   template <class Place>
   int node_between(std::vector<int> ends, const Place& place) {
     std::sort(ends.begin(), ends.end());

@@ -12,12 +12,12 @@ namespace pliant {
 
 namespace {
 
-/// Number of nodes in a panel for each level of refinement. It about doubles every two levels.
+/// Number of nodes in a panel for each level of refinement. Every two levels the number about doubles.
 constexpr std::array<int, 12> kBodySizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr std::size_t kLastBodyLevel = kBodySizes.size() - 3;
-/// Relative changes of the moments by refining. A rule whose change is at most kMomentTolerance has
-/// converged. A rule whose change is at most kAcceptableChange is used if two further levels do not halve the
-/// change.
+/// Changes of the moments by two further levels, relative to the volume. A rule whose change is at most
+/// kMomentTolerance has converged. The search also ends if the change is at most kAcceptableChange and two
+/// further levels do not halve this change.
 constexpr double kMomentTolerance = 5e-14, kAcceptableChange = 1e-12;
 constexpr Eigen::Index kMaxBodyPoints = 2'000'000;
 
@@ -55,7 +55,7 @@ BodyRule rule_of(const RestShape& shape, const Levels& levels) {
   return rule;
 }
 
-/// Returns the integrals of all products, relative to the volume.
+/// Returns the integrals of all products of Legendre polynomials, relative to the volume.
 VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) {
   VecX<double> sum = VecX<double>::Zero(polynomials.size());
   constexpr Eigen::Index block = 2048;
@@ -67,9 +67,10 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
   return sum / rule.volume.sum();
 }
 
-/// Returns the level along one direction at which refining changes no moment, with coarse nodes along the
-/// other directions. If no level suffices, returns the last level whose change was less than half the best
-/// change before it, and raises `remaining` to its change.
+/// Returns the first level along one direction at which two further levels change no moment by more than
+/// kMomentTolerance. The other directions have coarse nodes. If there is no such level, the result is the
+/// last level whose change was less than half of the smallest change before, and `remaining` is raised to
+/// this change.
 std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
                              std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;

@@ -35,7 +35,7 @@ MatX<double> LegendreProducts::derivative(int axis) const {
   const auto r = static_cast<std::size_t>(axis);
   MatX<double> E = MatX<double>::Zero(size(), size());
   for (Eigen::Index a = 0; a < size(); ++a)
-    // P_n' = sum (2k + 1) P_k, k = n - 1, n - 3, ...
+    // The derivative of P_n is sum (2k + 1) P_k, k = n - 1, n - 3, ... >= 0.
     for (std::array<int, 3> to = powers_[static_cast<std::size_t>(a)]; --to[r] >= 0; --to[r]) {
       const auto b = std::find(powers_.begin(), powers_.end(), to) - powers_.begin();
       E(a, b) = (2 * to[r] + 1) * 2 / box_.sizes()[axis];

@@ -19,7 +19,8 @@ class LegendreProducts {
   Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
   /// Returns the values of all products at points x (3 x n, m): n x size().
   MatX<double> values(const Eigen::Matrix3Xd& x) const;
-  /// Returns the matrix E with d/dx_axis of all products = E times all products, 1/m.
+  /// Returns the matrix E (1/m) for which E times the vector of all products is the derivative of this vector
+  /// along `axis` (0 to 2).
   MatX<double> derivative(int axis) const;
 
  private:

@@ -1,4 +1,4 @@
-// The placement of mass points. Rules are checked on the integrands of M and g_q, Eq. (11).
+// The placement of mass points. The search checks rules on the integrands of M and g_q, Eq. (11).
 #include <pliant/part/quadrature/mass_points.h>
 
 #include <Eigen/Cholesky>
@@ -11,7 +11,7 @@ using namespace rule_search;
 
 namespace {
 
-/// Points in packs of four.
+/// Points in packs of four. Unused lanes have mass 0.
 struct Packed {
   std::vector<Material<Pack>> at;
   std::vector<Pack> mass;
@@ -32,8 +32,9 @@ Packed pack(const std::vector<RestPoint>& points, double density) {
   return out;
 }
 
-/// Integrands of the mass matrix and of the inertial forces: (L a).(L b) and (L a).(acceleration at vdot = 0)
-/// for random combinations a, b of generalised velocities at random states.
+/// Integrands of the mass matrix and of the inertial forces: (L a).(L b) and (L a).x_ddot for random
+/// generalised velocities a and b at random states. x_ddot is the acceleration of a point if all generalised
+/// accelerations are zero.
 class MassIntegrands {
  public:
   static constexpr const char* subject = "mass matrix";
@@ -43,7 +44,7 @@ class MassIntegrands {
   explicit MassIntegrands(const RestShape& shape) : shape_(shape), ranges_(shape.part) {}
   int n() const { return ranges_.n(); }
 
-  /// Returns F(node, function): the contributions of the nodes of one direction to each integral.
+  /// Returns the contribution of each node of one direction (row) to each integral (column).
   Eigen::MatrixXd shares(const Columns& line, int n_states) const {
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(line.n_nodes, kEach * n_states);
     Draw draw;
@@ -81,8 +82,7 @@ class MassIntegrands {
     }
   }
 
-  /// L of Eq. (9) of all points in the body frame, and their accelerations at vdot = 0: three rows for each
-  /// point.
+  /// L of Eq. (9) and the acceleration x_ddot of all points in the body frame: three rows for each point.
   struct Kinematics {
     Eigen::MatrixXd L;
     Eigen::VectorXd acceleration;
@@ -114,8 +114,8 @@ class MassIntegrands {
     return all;
   }
 
-  /// Scales each column to a root mean square of 1, so that small entries of M count as much as large ones.
-  /// Returns false if the points have no mass.
+  /// Scales each column of L, and the acceleration, to a root mean square of 1, so that small entries of M
+  /// count as much as large entries. Returns false if the points have no mass.
   static bool scale_columns(const std::vector<RestPoint>& points, Kinematics& all) {
     double mass = 0;
     for (const RestPoint& p : points) mass += p.mass;
@@ -135,7 +135,7 @@ class MassIntegrands {
   StateRanges ranges_;
 };
 
-/// Returns the values of the parameters at time 0, without rates.
+/// Returns the values of the parameters at time 0, with zero rates.
 ParameterValues<double> initial_values(const Part& part) {
   const Parameters& all = part.parameters();
   VecMax<double> q_s(all.n_dynamic()), zero = VecMax<double>::Zero(all.n_dynamic());
@@ -143,8 +143,8 @@ ParameterValues<double> initial_values(const Part& part) {
   return all.expand<double>(q_s, zero);
 }
 
-/// Returns three points in each of the plane sections that the search chooses. extra: levels of refinement
-/// beyond those that suffice.
+/// Returns three points in each of the plane sections that the search chooses. extra: number of levels of
+/// refinement beyond the level that suffices.
 PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integrands, int extra) {
   auto columns = [&](const std::vector<SliceNode>& nodes) {
     Columns line{{Column{}}, 0};
@@ -163,7 +163,7 @@ PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integran
   return placed;
 }
 
-/// Returns four points with the mass, the centroid and the second moments of the given ones.
+/// Returns four points of equal mass with the mass, the centroid and the second moments of the given points.
 std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestPoint>& points) {
   const ShapeInterface& shape = r.part.shape();
   double m = 0;
@@ -175,8 +175,8 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
     first += p.mass * e;
     second += p.mass * e * e.transpose();
   }
-  // Moments that are zero by symmetry are set to zero. In slender bodies their rounding errors would couple
-  // parameters that are not coupled.
+  // Moments that differ from zero by rounding only are set to zero. In slender bodies these rounding errors
+  // would couple parameters that are not coupled.
   constexpr double noise = 1e-14;
   Vec3<double> centre = first / m;
   for (int i = 0; i < 3; ++i)

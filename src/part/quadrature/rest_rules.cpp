@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-/// Returns how material points follow the dynamic parameters, chain included.
+/// Returns how material points follow the dynamic parameters, with the chain of deformations included.
 Follows follows(const Part& part) {
   const Parameters& all = part.parameters();
   Follows worst = Follows::affine;
@@ -23,8 +23,8 @@ Follows follows(const Part& part) {
     if (link.sections != Sections::stay_affine) worst = std::max(worst, Follows::section);
     tilted = tilted || link.sections == Sections::tilt;
   }
-  // A shear after a bend also depends on z. It maps a tilted plane section affinely to a plane section, so it
-  // is allowed.
+  // A shear after a bend depends on z too. The shear maps a tilted plane section affinely to a plane section,
+  // so that the result is not Follows::free.
   return worst;
 }
 
@@ -45,8 +45,8 @@ struct PlaneMoments {
     xy += mass * px * py;
     yy += mass * py * py;
   }
-  /// Returns three positions. Three equal masses there have the centre and the second moments of all masses
-  /// that were added.
+  /// Returns three positions. Three equal masses at these positions have the centre and the second moments of
+  /// all masses that were added.
   std::array<Eigen::Vector2d, 3> points() const {
     const double cx = x / m, cy = y / m;
     Eigen::Matrix2d spread;
@@ -62,8 +62,8 @@ struct PlaneMoments {
   }
 };
 
-/// Returns a sine or cosine from the logarithm of its absolute value. The derivative of the logarithm stays
-/// finite where the value underflows.
+/// Returns a sine or cosine from the logarithm of its absolute value, the derivative of this logarithm, and
+/// the sign. The derivative of the logarithm is finite where the value underflows.
 Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   const double value = sign * std::exp(log_abs);
   Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};
@@ -80,7 +80,7 @@ Trig<Dual<1>> with_slope(double value, double slope) {
   return r;
 }
 
-/// Adds m equidistant nodes of a periodic panel.
+/// Adds m equidistant nodes of a periodic panel to `nodes`.
 void add_periodic_nodes(const Panel& panel, int m, std::vector<AngleNode>& nodes) {
   for (int i = 0; i < m; ++i) {
     const double angle = panel.from + (panel.to - panel.from) * (i + 0.5) / m;
@@ -89,7 +89,7 @@ void add_periodic_nodes(const Panel& panel, int m, std::vector<AngleNode>& nodes
   }
 }
 
-/// Adds Gauss nodes of a panel over which the shape is smooth in the angle.
+/// Adds n Gauss nodes of a panel on which the shape is smooth in the angle to `nodes`.
 void add_smooth_nodes(const Panel& panel, int n, std::vector<AngleNode>& nodes) {
   for (const QuadratureNode& node : gauss_rule(n)) {
     const double angle = panel.from + (panel.to - panel.from) * node.x;
@@ -98,14 +98,14 @@ void add_smooth_nodes(const Panel& panel, int n, std::vector<AngleNode>& nodes) 
   }
 }
 
-/// A panel from a coordinate axis to 45 degrees, in the variable t = |near|^eps in [0, 2^(-eps/2)], where
-/// near is the sine or the cosine that vanishes at the axis, and far is the other one.
+/// A panel from a coordinate axis to 45 degrees, with the variable t = |near|^eps in [0, 2^(-eps/2)]. `near`
+/// is the sine or cosine that vanishes at the axis, and `far` is the other function.
 class PowerPanel {
  public:
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
   /// Adds n nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near
-  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to about t =
+  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest. The smallest t is about
   /// e^-37, which is rounding relative to 1.
   void add_for_all_powers(int n) {
     const double reach = 37 / panel_.eps;
@@ -119,8 +119,8 @@ class PowerPanel {
   void add_for_fixed_power(int n) {
     double reach = std::exp2(-panel_.eps / 2);
     if (panel_.eps < 0.25) {
-      // The superellipse is nearly a square, and the integrand varies only next to its corner at 45 degrees,
-      // where log near is the suitable variable. For near < e^-16, far is 1 to rounding.
+      // The superellipse is nearly a square, and the integrand varies only next to the corner at 45 degrees,
+      // where log near is the suitable variable. For near < e^-16, far is 1 to within rounding.
       const double to = -16;
       for (const QuadratureNode& node : gauss_rule(n)) {
         const double log_near = kMiddle + (to - kMiddle) * node.x;
@@ -149,9 +149,8 @@ class PowerPanel {
   std::vector<AngleNode>& nodes_;
 };
 
-/// Returns the nodes of panels: n in each panel, 2 n in a periodic panel and in a power panel of a small
-/// fixed exponent. dynamic_exponents: whether exponents are degrees of freedom, so that the powers in the
-/// integrand vary.
+/// Returns the nodes of panels: n in each panel, but 2 n in a periodic panel and in a power panel with a
+/// fixed exponent below 0.25. dynamic_exponents: whether an exponent is a degree of freedom.
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool dynamic_exponents) {
   std::vector<AngleNode> nodes;
   for (const Panel& panel : panels) {
@@ -179,8 +178,8 @@ Trig<double> drop(const Trig<Dual<1>>& t) {
   return {t.x.v, t.sign.v, t.log_abs.v};
 }
 
-/// Returns whether the rings of a shape are plane. Rings of a shape that a user adds need not be plane;
-/// three points then cannot represent a ring.
+/// Returns whether the rings of a shape are plane, from a sample. Rings of a shape of the user need not be
+/// plane. Three points cannot represent a ring that is not plane.
 bool plane_rings(const RestShape& r) {
   for (const AngleNode& u : profile_nodes(r, 3)) {
     double low = kInfinity, high = -kInfinity;
@@ -259,8 +258,8 @@ std::vector<QuadratureNode> depth_nodes(const RestShape& r, int n) {
 
 namespace {
 
-/// The nodes of a ring: undeformed positions e of the rest map, and [e_u e_v e_w] there. The derivatives are
-/// by the variables of the rules along u, v and w.
+/// The nodes of a ring: positions e of the rest map, before the chain of deformations, and the tangents
+/// [e_u e_v e_w]. The derivatives are by the variables of the rules along u, v and w.
 struct RingTangents {
   Eigen::Matrix3Xd e;
   std::vector<Mat3<double>> tangents;

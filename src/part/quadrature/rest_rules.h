@@ -1,7 +1,7 @@
-// Quadrature over the rest shape of a part, direction by direction. A rule consists of slices, which are
-// plane sections z = const of a solid, or of rings of material points (u, w) = const. Each slice or ring
-// yields mass points. A node is a point of the one-dimensional rule along z, u, v or w. rule_search.h chooses
-// the nodes.
+// Quadrature over the rest shape of a part, direction by direction. A rule consists of slices or of rings.
+// Slices are plane sections z = const of a solid; rings consist of material points (u, w) = const. Each slice
+// or ring gives mass points. A node is a point of the one-dimensional rule along z, u, v or w. rule_search.h
+// chooses the nodes.
 #pragma once
 
 #include <vector>
@@ -14,25 +14,25 @@ namespace pliant {
 
 struct RestPoint {
   Material<double> at;
-  double mass;  ///< for unit density
+  double mass;  ///< for density 1: volume of a solid (m^3) or area of a shell (m^2)
 };
 
-/// A part at rest, and how its points can move with the dynamic parameters.
+/// A part at rest, and how its material points follow the dynamic parameters.
 struct RestShape {
   explicit RestShape(const Part& whole);
 
   const Part& part;
   ParameterValues<double> rest;
   const double* a;  ///< parameters of the shape
-  Follows follows;  ///< how material points follow the dynamic parameters, chain included
+  Follows follows;  ///< how material points follow the dynamic parameters, with the chain included
   bool dynamic_exponents;
   bool by_sections;   ///< whether the rule uses slices; else it uses rings
   bool points_apart;  ///< whether each point of a ring moves independently; else three points represent the
                       ///< ring
 };
 
-// Nodes along one direction. n: number of nodes in a panel. A periodic panel, and a panel of a fixed exponent
-// below 0.25, have twice as many.
+// Nodes along one direction. n: number of nodes in a panel. The number is 2 n in a periodic panel and in a
+// panel with a fixed exponent below 0.25.
 
 /// A plane section at zeta = z / h, and its weight. h: half height of the shape.
 struct SliceNode {
@@ -40,7 +40,8 @@ struct SliceNode {
 };
 /// Returns nodes along z. A panel with singular ends has 2 n nodes.
 std::vector<SliceNode> slice_nodes(const RestShape& shape, int n);
-/// Appends three points that represent the section; none if the section has no area.
+/// Appends three points that represent the section; none if the section has no area or no volume at rest.
+/// Throws std::invalid_argument if the rest shape folds over there.
 void add_slice(const RestShape& shape, const SliceNode& node, std::vector<RestPoint>& out);
 
 /// A node along a material angle: cosine and sine with their derivatives by the variable of the rule.
@@ -50,10 +51,11 @@ struct AngleNode {
 };
 std::vector<AngleNode> profile_nodes(const RestShape& shape, int n);  ///< along u
 std::vector<AngleNode> ring_nodes(const RestShape& shape, int n);     ///< along v
-/// Along w; for a shell only w = 1.
+/// Returns n nodes along w; for a shell the node w = 1.
 std::vector<QuadratureNode> depth_nodes(const RestShape& shape, int n);
-/// Appends the points of a ring: one for each node of v if shape.points_apart, else three points, or none if
-/// the ring has no mass.
+/// Appends the points of a ring. If shape.points_apart, there is one point for each node of v; else there are
+/// three points, or none if the ring has no mass. Throws std::invalid_argument if the rest shape folds over
+/// there.
 void add_ring(const RestShape& shape, const AngleNode& u, const QuadratureNode& w,
               const std::vector<AngleNode>& v, std::vector<RestPoint>& out);
 

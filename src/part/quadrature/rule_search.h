@@ -1,7 +1,8 @@
 // The search for a quadrature rule over the rest shape of a part. Along each direction the number of nodes is
-// doubled until no integral changes. Then the rule is thinned: as many nodes are removed as the integrals
-// allow. Both steps use integrands at states spread over the ranges of the dynamic parameters, and at places,
-// which are random nodes of the other directions. A class Integrands defines the integrands:
+// increased until doubling changes no integral. Then the rule is thinned: as many nodes are removed as the
+// integrals allow. Both steps use integrands at states and places. States are spread over the ranges of the
+// dynamic parameters; places are random nodes of the other directions. A class Integrands defines the
+// integrands:
 //   subject         "mass matrix", for messages
 //   kEach           number of integrands for each state
 //   kTolerance      relative change by doubling at which a rule has converged
@@ -25,14 +26,14 @@
 
 namespace pliant::rule_search {
 
-/// Number of nodes in a panel for each level of refinement. It about doubles every two levels.
+/// Number of nodes in a panel for each level of refinement. Every two levels the number about doubles.
 inline constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 inline constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 inline int size_at(int level) {
   return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))];
 }
 
-/// Random numbers by xorshift, equal on every machine.
+/// Pseudo-random numbers by xorshift. Each new object gives the same sequence on every machine.
 class Draw {
  public:
   /// Returns a number in [0, 1).
@@ -74,20 +75,22 @@ class StateRanges {
     for (int i : all.dynamic()) {
       const Parameter& p = all[i];
       const double rest = p.rest_value();
-      // Lengths scale the body: half to twice the rest value suffices. Offsets range up to twice the size of
-      // the body.
+      // An offset is a length that is not relative to its rest value. It stays within twice the size of the
+      // body.
       const bool offset = !p.spec->relative && p.spec->quantity == Quantity::length;
       const double scale = p.spec->relative ? rest : (offset ? part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;
-      // Numbers whose limits span orders of magnitude are treated like lengths.
+      // Lengths that scale the body, and parameters whose upper limit is above 100 times the scale, stay
+      // between half and twice the rest value. If this rest value is 0, as for an offset without limits, only
+      // 0 is used.
       const bool wide = p.spec->relative || p.limits.max > 100 * scale;
       ranges_.push_back({std::max({p.limits.min, wide ? 0.5 * rest : -kInfinity, -reach}),
                          std::min({p.limits.max, wide ? 2 * rest : kInfinity, reach}), rest, scale});
     }
   }
   int n() const { return static_cast<int>(ranges_.size()); }
-  /// Draws values and rates of a state. State 0 has the rest values. Every third state is at a corner of the
-  /// ranges, where the integrands are hardest to integrate.
+  /// Draws values q and rates of a state. State 0 has the rest values. Every third state is at a corner of
+  /// the ranges, where the integrands are hardest to integrate.
   void draw(Draw& draw, int state, VecMax<double>& q, VecMax<double>& rate) const {
     q.resize(n());
     rate.resize(n());
@@ -108,9 +111,9 @@ class StateRanges {
 };
 
 /// Returns the first level of refinement at which doubling changes no integral by more than kTolerance, or
-/// the first level whose change is at most kRequired and is not halved by the next two levels. If there is
-/// none, returns the last level and raises `remaining` to the smallest change found (within a factor of 2).
-/// columns(level) places the nodes.
+/// the first level whose change is at most kRequired and is not halved by the next two levels. If there is no
+/// such level, returns the last level and raises `remaining` to the smallest change found (within a factor of
+/// 2). columns(level) returns the points of the nodes of a level.
 template <class Integrands, class MakeColumns>
 int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
@@ -140,22 +143,23 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
       min_change = change;
       best = level;
     }
-    // Sums of terms that cancel have rounding errors that no finer rule reduces.
+    // If terms of a sum cancel, no finer rule reduces the rounding errors.
     if (min_change <= Integrands::kRequired && level >= best + 2) return best;
   }
   remaining = std::max(remaining, min_change);
   return kLastLevel;
 }
 
-/// Removes the nodes of one direction that the integrals do not need, and adjusts the weights of the others.
+/// Removes the nodes of one direction that the integrals do not need, and adjusts the weights of the other
+/// nodes. line: the points of the nodes.
 template <class Integrands, class Node>
 void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& nodes) {
   Eigen::VectorXd factors;
   for (int n_states = 80;; n_states *= 2) {
     Eigen::Index rank = 0;
     factors = thin_rule(integrands.shares(line, n_states), &rank, Integrands::kThin);
-    // Stop when further states would add no new integrand (the rank is far below the number of integrands),
-    // or when no node can be removed.
+    // Stop when further states would add no new integrand, which means that the rank is far below the number
+    // of integrands, or when no node can be removed.
     if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
@@ -168,7 +172,7 @@ void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& 
   nodes = std::move(kept);
 }
 
-/// Maximum number of points. With more, a step would take a large part of a second.
+/// Maximum number of points. With more points, a step would take a large part of a second.
 inline constexpr std::size_t kMaxPoints = 2'000'000;
 [[noreturn]] inline void throw_too_many_points(const Part& part, const char* subject) {
   std::string names;
@@ -182,7 +186,7 @@ inline constexpr std::size_t kMaxPoints = 2'000'000;
 struct PlacedPoints {
   std::vector<RestPoint> points;
   int level = 0;         ///< level of refinement along the last direction
-  double remaining = 0;  ///< relative change by doubling, from refine(); 0 if a level suffices everywhere
+  double remaining = 0;  ///< largest `remaining` of refine(); 0 if every search found a level that suffices
 };
 
 inline void remove_massless(std::vector<RestPoint>& points) {
@@ -190,8 +194,8 @@ inline void remove_massless(std::vector<RestPoint>& points) {
                points.end());
 }
 
-/// Maximum number of nodes to thin. The time of thinning grows with the cube of this number; with more nodes
-/// it exceeds the time that most runs save.
+/// Maximum number of rings to thin together. The time of thinning grows with the cube of this number; with
+/// more rings, thinning takes longer than the time that most runs save.
 inline constexpr std::size_t kMaxThinned = 600;
 
 /// A ring of material points.
@@ -207,12 +211,12 @@ inline void add_ring(const RestShape& shape, const RingNode& ring, const std::ve
   add_ring(shape, ring.u, w, v, out);
 }
 
-/// The search for rings of points. It chooses nodes along v, then w, then u.
+/// The search for rings of points, which chooses nodes along v, then w, then u.
 template <class Integrands>
 class RingSearch {
  public:
-  /// thinned: whether to thin u and w; v is thinned if the points of a ring move independently. extra: levels
-  /// of refinement beyond those that suffice.
+  /// thinned: whether to thin the nodes along u and w. The nodes along v are thinned if the points of a ring
+  /// move independently. extra: number of levels of refinement beyond the level that suffices.
   RingSearch(const RestShape& shape, const Integrands& integrands, bool thinned, int extra)
       : shape_(shape), integrands_(integrands), thinned_(thinned), extra_(extra) {}
 
@@ -221,7 +225,7 @@ class RingSearch {
     search_v(placed);
     if (!shape_.part.shell()) search_w(placed);
     search_u(placed);
-    // Thinning of all pairs (u, w) together leaves fewer rings than thinning of u and of w alone.
+    // Thinning all pairs (u, w) together leaves fewer rings than thinning along u and along w alone.
     std::vector<RingNode> rings;
     for (const AngleNode& at : u_)
       for (const QuadratureNode& depth : w_) rings.push_back({at, depth});
@@ -256,8 +260,8 @@ class RingSearch {
     if (thinned_) thin(integrands_, along_u(u_), u_);
   }
 
-  // Return nodes of one direction at random places of the other directions. If the points of a ring do not
-  // move independently, a place has no node of v, and each column has whole rings.
+  // The functions along_*() return the points of the nodes of one direction, at random places of the other
+  // directions. If the points of a ring do not move independently, a column has whole rings.
 
   Columns along_v(const std::vector<AngleNode>& nodes) const {
     Columns line;
@@ -320,7 +324,7 @@ class RingSearch {
   const Integrands& integrands_;
   bool thinned_;
   int extra_;
-  // The nodes found so far; coarse ones along directions that have not been searched yet.
+  // The nodes found so far. Directions that have not been searched yet have coarse nodes.
   std::vector<AngleNode> u_ = profile_nodes(shape_, kCoarse), v_ = ring_nodes(shape_, kCoarse);
   std::vector<QuadratureNode> w_ = depth_nodes(shape_, kCoarse);
 };

@@ -17,7 +17,7 @@ using namespace rule_search;
 
 namespace {
 
-/// Material points with derivatives along three directions.
+/// Material points with their derivatives along three directions.
 using TangentPoints = std::vector<Material<Dual<3>>>;
 
 /// Changes the directions of the derivatives of a material point. The columns of from_X are the new
@@ -34,8 +34,8 @@ void change_directions(Material<Dual<3>>& m, const Mat3<double>& from_X) {
   change(m.w);
 }
 
-/// Returns the material directions (columns) of unit steps in the rest body: along x, y, z of a solid, along
-/// two orthonormal tangents of a shell. at_rest: [s_u s_v s_w] at rest.
+/// Returns the directions in (u, v, w) (columns) of unit steps in the rest body: along x, y and z for a
+/// solid, along two orthonormal tangents for a shell (third column zero). at_rest: [s_u s_v s_w] at rest.
 Mat3<double> material_directions(const Mat3<double>& at_rest, bool shell) {
   if (!shell) return at_rest.inverse();
   Mat3<double> from_X = Mat3<double>::Zero();
@@ -47,7 +47,7 @@ Mat3<double> material_directions(const Mat3<double>& at_rest, bool shell) {
   return from_X;
 }
 
-/// Returns the points with derivatives along the directions X of the rest body (StrainPoints).
+/// Returns the points with their derivatives along the directions X of the rest body (StrainPoints).
 TangentPoints with_derivatives(const Part& part, const ParameterValues<double>& rest,
                                const std::vector<RestPoint>& points) {
   const std::size_t n = points.size();
@@ -68,7 +68,7 @@ TangentPoints with_derivatives(const Part& part, const ParameterValues<double>& 
   return moving;
 }
 
-/// Returns the points in packs of four, with derivatives along the directions X.
+/// Returns the points in packs of four, with their derivatives along the directions X of the rest body.
 StrainPoints with_directions(const Part& part, const ParameterValues<double>& rest,
                              const std::vector<RestPoint>& points) {
   const std::size_t n = points.size();
@@ -90,8 +90,9 @@ StrainPoints with_directions(const Part& part, const ParameterValues<double>& re
   return out;
 }
 
-/// Integrands: energy, force and stiffness along random directions at random states, each scaled to a root
-/// mean square of 1 over the body, so that soft states count as much as stiff ones; and the volume.
+/// The integrands of a state: energy, force and stiffness along random directions, and the volume. Each
+/// integrand is divided by its root mean square over the body, so that soft states count as much as stiff
+/// states.
 class StrainIntegrands {
  public:
   static constexpr const char* subject = "strain energy";
@@ -182,8 +183,8 @@ class StrainIntegrands {
         law_);
   }
 
-  /// Returns the root mean squares of the integrands over the body in a state. A root mean square that is
-  /// only rounding error relative to that of the stiffness is set to infinity.
+  /// Returns the root mean squares of the integrands over the body in state `number`. The result is infinity
+  /// for an integrand whose root mean square is at most 1e-10 times that of the stiffness.
   const Densities& units(int number, const State& state) const {
     const auto known = units_.size();
     if (static_cast<std::size_t>(number) < known) return units_[static_cast<std::size_t>(number)];
@@ -209,8 +210,8 @@ class StrainIntegrands {
   mutable std::vector<Densities> units_;  // of each state, in the order in which they are drawn
 };
 
-/// Removes points that the integrals do not need, in groups, as long as a pass removes more than a quarter of
-/// the points.
+/// Removes points that the integrals do not need. Each pass handles the points in groups; the passes end when
+/// a pass removes at most a quarter of the points.
 void thin_points(const StrainIntegrands& integrands, std::vector<RestPoint>& points) {
   constexpr std::size_t group = 400;
   struct Weighted {
@@ -248,7 +249,7 @@ std::string dynamic_names(const Part& part) {
 StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume) {
   RestShape shape(part);
   if (shape.follows == Follows::affine && !part.shell()) {
-    // The strain is equal everywhere: one point represents the body.
+    // The strain is equal everywhere, so that one point represents the body.
     StrainPoints one = with_directions(part, shape.rest, {{material_at(0.4, 0.7, 0.5), volume}});
     one.rule = "affine";
     return one;

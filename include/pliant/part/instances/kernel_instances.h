@@ -1,7 +1,6 @@
 // Explicit instances of the kernels of all shapes and deformations in the lists PLIANT_ALL_SHAPES and
-// PLIANT_ALL_DEFORMS. src/part compiles each once;
-// programs and the other sources of the library do not compile them again. Kernels of a program's own shapes
-// are compiled in the program.
+// PLIANT_ALL_DEFORMS. src/part compiles each instance once; programs and the other sources of the library
+// only declare the instances. A program compiles the kernels of its own shapes itself.
 #pragma once
 
 #include <pliant/deform/all_deforms.h>
@@ -11,7 +10,7 @@
 
 namespace pliant {
 
-/// Declares (Linkage: extern) or defines (Linkage: empty) the instances of one shape.
+/// Declares (Linkage is extern) or defines (Linkage is empty) the instances of one shape.
 #define PLIANT_SHAPE_KERNELS(Linkage, Shape)                                                            \
   Linkage template void shape_jets<Shape, double, Pack, Pack>(const LinkParameters<double>&,            \
                                                               const Material<Pack>*, JetBatch<Pack>&);  \
@@ -21,7 +20,7 @@ namespace pliant {
   Linkage template HalfHeight<Dual<1>> half_height_jet<Shape, Dual<1>>(const LinkParameters<Dual<1>>&); \
   Linkage template class ShapeInterfaceOf<Shape>;
 
-/// Declares or defines the instances of one deformation.
+/// Declares (Linkage is extern) or defines (Linkage is empty) the instances of one deformation.
 #define PLIANT_DEFORM_KERNELS(Linkage, Deform)                                                            \
   Linkage template void apply_link<Deform, double, Pack>(const HalfHeight<double>&,                       \
                                                          const LinkParameters<double>&, JetBatch<Pack>&); \

@@ -1,4 +1,4 @@
-// Function bodies of LocalDeformation, and the choice of its type by the settings.
+// Function bodies of LocalDeformation, and the choice of the derived class by the settings.
 #pragma once
 
 #include <memory>
@@ -30,13 +30,13 @@ inline std::unique_ptr<LocalDeformation> local_deformation_of_basis(const Part& 
   }
 }
 
-/// Returns an error message that begins with the name of the part.
+/// Returns an error message with the name of the part in front, unless the message has this name already.
 inline std::string with_part_name(const Part& part, const std::string& error) {
   const std::string name = "part '" + part.name() + "': ";
   return error.compare(0, name.size(), name) == 0 ? error : name + error;
 }
 
-/// Returns the pseudo-inverse of a compliance.
+/// Returns the inverse of a compliance A, or the pseudo-inverse if A is nearly singular.
 inline MatX<double> inverse_of_compliance(const MatX<double>& A) {
   constexpr double smallest = 1e-11;  // smaller eigenvalues of A, scaled to a unit diagonal, are not inverted
   const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

@@ -12,22 +12,22 @@
 namespace pliant {
 
 struct LocalLawInfo {
-  /// A constant of a law, as a scene gives it.
+  /// A constant of a law, as a key with a number in a scene.
   struct Number {
     const char* key;
     const char* unit;
     const char* meaning;
     double min;
-    bool above;                           ///< true: values must be > min; false: >= min
-    std::optional<double> fallback = {};  ///< default value; without one a scene must give the number
+    bool above;                           ///< true: the value must be > min; false: >= min
+    std::optional<double> fallback = {};  ///< default value; if empty, a scene must give the number
     double max = std::numeric_limits<double>::infinity();  ///< largest allowed value
   };
   const char* name;
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
   std::vector<Number> numbers;
-  /// Makes the energy of a mesh. values: the values of `numbers`, in this order. Throws std::invalid_argument
-  /// for impossible values.
+  /// Returns the energy of a mesh. values: the values of `numbers`, in this order. Throws
+  /// std::invalid_argument for impossible values.
   std::unique_ptr<NodalEnergy> (*make_energy)(const LocalMesh& mesh, const double* values);
   bool quadratic = false;  ///< whether the energy is quadratic in d, as modes require
 };
@@ -35,11 +35,11 @@ struct LocalLawInfo {
 /// Returns all laws, in the order of `pliant list` and of the schema.
 const std::vector<LocalLawInfo>& all_local_laws();
 
-/// Returns the law of this name. Throws std::logic_error if there is none.
+/// Returns the law of this name. Throws std::logic_error if there is no law of this name.
 const LocalLawInfo& local_law_info(const std::string& name);
 
-/// Returns a law by name with the values of its `numbers`, in this order. Throws std::invalid_argument for a
-/// wrong number of values, and for an unknown name; in that case the message lists the laws.
+/// Returns the law of this name with the given values of its `numbers`, in this order. Throws
+/// std::invalid_argument for an unknown name, with a list of all laws, and for a wrong number of values.
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values);
 
 }  // namespace pliant

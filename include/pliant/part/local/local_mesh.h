@@ -1,5 +1,5 @@
 // A mesh of the material domain of a part at rest: the surface of a shell, or the body of a solid.
-// NodeWeights are a row of the shape matrix S of d = S q_d, Eq. (5).
+// The NodeWeights of a material point give its rows of the shape matrix S of d = S q_d, Eq. (5).
 #pragma once
 
 #include <vector>
@@ -20,15 +20,17 @@ struct LocalMesh {
   VecX<double> mass;           ///< lumped mass of each node, kg
   double density = 0;          ///< kg/m^3 of a solid, kg/m^2 of a shell
   bool shell() const { return tetrahedra.cols() == 0; }
-  /// Returns for each node a third of the area of its triangles, m^2; 0 for nodes inside the body.
+  /// Returns a third of the area of the triangles around each node at rest, m^2; 0 for a node inside the
+  /// body.
   VecX<double> areas() const;
 };
 
-/// Makes the mesh. Its nodal masses reproduce the mass, the centre and the second moments of the part. Throws
-/// LocalFault if no positive masses reproduce them, and std::invalid_argument as Surface and Solid do.
+/// Returns the mesh. Its nodal masses are lumped masses with the smallest relative changes that reproduce the
+/// mass, the centre and the second moments of the part. Throws LocalFault if no changes reproduce these
+/// moments or if a changed mass is not positive, and std::invalid_argument as Surface and Solid do.
 LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings);
 
-/// A material point as a weighted sum of nodes: d = sum weight_i d_i.
+/// The weights of nodes at a material point: the displacement there is d = sum weight_i d_i.
 struct NodeWeights {
   std::vector<int> node;
   std::vector<double> weight;

@@ -1,5 +1,5 @@
-// The workspace of a local deformation: the quantities that an evaluation recomputes, in the order of its
-// stages. Each choice of the basis S adds fields in a derived type.
+// The workspace of a local deformation: the quantities that an evaluation recomputes, in the order of the
+// stages (local_deformation.h). Each choice of the basis S adds fields in a derived class.
 #pragma once
 
 #include <bitset>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// The response of a part to impulses on (v_r, the attachment points of joints), in place of M^-1. A method
+/// The response of a part to impulses on (v_r, the attachment points of joints), instead of M^-1. A method
 /// that integrates the elasticity of the part implicitly supplies this response for a step.
 class LocalResponse {
  public:
@@ -18,7 +18,8 @@ class LocalResponse {
   virtual MatX<double> compliance() const = 0;
   /// Adds to d_dot the changes of the local rates that impulses g on (v_r, the attachment points) cause.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
-  /// Replaces impulses on v_r and on all local coordinates by the changes of the velocities that they cause.
+  /// Replaces impulses on v_r (on_frame) and on all local coordinates (on_d) by the changes of v_r and of the
+  /// local rates that these impulses cause.
   virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
 };
 
@@ -31,8 +32,8 @@ struct LocalWorkspace {
   // Stage masses().
   MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
   Vec3<double> moment;  ///< sum m p, kg m
-  /// One bit for each coordinate of (c, theta, q_s): whether it moves nothing at the current shape. Such a
-  /// coordinate has no inertia and gets no acceleration.
+  /// One bit for each coordinate of (c, theta, q_s): true if the coordinate has no inertia because it moves
+  /// no material at the current shape. The acceleration of this coordinate is zero.
   std::bitset<kMaxVelocities> without_inertia;
 
   // Stage forces().
@@ -43,8 +44,8 @@ struct LocalWorkspace {
   VecX<double> a_free;  ///< (a_r, d_ddot at the attachment points) without joints and limits
 
   // Joints.
-  MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its pseudo-inverse
-  const LocalResponse* response = nullptr;  ///< if not nullptr, A is its compliance, not that of M^-1
+  MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its (pseudo-)inverse
+  const LocalResponse* response = nullptr;  ///< if not nullptr, A is response->compliance(), not M^-1
 
   /// Sets d and d_dot to n local coordinates and their rates. The arrays must outlive the use of the
   /// workspace.
@@ -52,9 +53,11 @@ struct LocalWorkspace {
     new (&d) Eigen::Map<const VecX<double>>(q_d, n);
     new (&d_dot) Eigen::Map<const VecX<double>>(q_d_dot, n);
   }
-  /// Returns the condition number of the matrix that separates (c, theta, q_s) from d; 1 is best.
+  /// Returns an estimate of the condition number of the matrix that separates (c, theta, q_s) from d: K for
+  /// nodes, S for modes (README.md). The best value is 1.
   virtual double condition() const { return 1; }
-  /// Stores A and its pseudo-inverse. A is nearly singular if attachment points are close together.
+  /// Stores A and its inverse. A is nearly singular if attachment points are close together; the
+  /// pseudo-inverse then replaces the inverse.
   void set_compliance(MatX<double> compliance);
 };
 

@@ -1,5 +1,6 @@
 // Function bodies of ModalDeformation: construction, and the stages of the dynamics (modal_deformation.h).
-// forces() adds g_q and -K q_d of Eq. (11); K is diagonal, with the squared frequencies of the modes.
+// forces() computes g_q and -K q_d of Eq. (11). K is diagonal, with the squared angular frequencies of the
+// modes.
 #pragma once
 
 #include <cmath>
@@ -25,7 +26,7 @@ PLIANT_INLINE double ModalWorkspace::condition() const {
 
 namespace detail {
 
-/// Returns sum m a b^T over spectral nodes.
+/// Returns sum m a b^T over spectral nodes. a, b: one row for each spectral node.
 template <class A, class B>
 Mat3<double> spectral_outer(const VecX<double>& m, const A& a, const B& b) {
   return a.transpose() * m.asDiagonal() * b;
@@ -40,8 +41,8 @@ PLIANT_INLINE ModalDeformation::ModalDeformation(const Part& part, const LocalSe
   oscillators_.omega2 = basis_.omega2;
   oscillators_.damping = settings.alpha + settings.beta * basis_.omega2.array();
   if (part.n_s() > 0) packs_ = packs_of(basis_.points);
-  // The modes represent the component of an initial field along them. The frame and the parameters represent
-  // a least-squares fit of the field.
+  // The modes get the components of an initial field along the modes. The frame and the parameters get a
+  // least-squares fit of the field.
   const MatX<double> G = rest_frame(part, basis_);
   auto project = [&](const std::function<Vec3<double>(const Vec3<double>&)>& field, VecX<double>& on_modes,
                      VecX<double>& on_frame) {
@@ -72,7 +73,7 @@ PLIANT_INLINE const char* ModalDeformation::unit(Eigen::Index) const {
 }
 
 PLIANT_INLINE double ModalDeformation::cost() const {
-  constexpr double per_entry_of_B = 0.0005;  // microseconds; an evaluation reads B six times
+  constexpr double per_entry_of_B = 0.0005;  // microseconds; six multiplications per entry if n_s = 0
   return per_entry_of_B * static_cast<double>(basis_.B.size());
 }
 
@@ -155,12 +156,13 @@ PLIANT_INLINE void ModalDeformation::masses(const Part& part, const VecX<double>
   }
   w.H0 = w.undeformed.M;
   w.moment = w.undeformed.moment;
-  // The contributions of d. They use int d dm = 0.
+  // Contributions of d to M_rr, with int d dm = 0.
   const Mat3<double> sd = detail::spectral_outer(m, w.s(), w.D), dd = detail::spectral_outer(m, w.D, w.D);
   const Mat3<double> Q = sd + sd.transpose() + dd;
   w.M_rr = w.H0;
   w.M_rr.block<3, 3>(3, 3) += Q.trace() * Mat3<double>::Identity() - Q;
-  // C = R^T B. If no parameter is dynamic, int s x Phi dm = 0, so that s drops out.
+  // The rows of C for theta and q_s are R^T B. If no parameter is dynamic, int s x Phi dm = 0, so that R
+  // needs only the part d of p = s + d.
   w.R.setZero(3 * n, 3 + n_s);
   const Nodes mp = n_s > 0 ? Nodes(m.asDiagonal() * (w.D + w.s())) : Nodes(m.asDiagonal() * w.D);
   for (int i = 0; i < 3; ++i) {
@@ -193,9 +195,10 @@ PLIANT_INLINE void ModalDeformation::forces(const VecX<double>& v_r, const Vec3<
   w.f_r = w.undeformed.g_q + w.undeformed.M.leftCols<3>() * g;
   w.F.setZero(n_fields(), 3);
   if ((v_r.tail(3 + n_s).array() != 0).any()) {
-    // g_q of Eq. (11): b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + Jdot q_s_dot. The terms
-    // of s and of d are separate, because undeformed.g_q has the integrals of s alone already.
-    const Mat3<double> spin = skew(omega).transpose(), spin2 = spin * spin;  // act on rows
+    // g_q of Eq. (11): b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + Jdot q_s_dot. The terms of s
+    // and of d are separate, because f_r already contains the integrals of the terms of s alone
+    // (undeformed.g_q).
+    const Mat3<double> spin = skew(omega).transpose(), spin2 = spin * spin;  // for row vectors
     const Nodes of_shape = w.s() * spin2 + 2 * w.s1() * spin + w.s2(),
                 of_d = w.D * spin2 + 2 * w.D_dot * spin, b = of_shape + of_d;
     w.F.noalias() = -(m.asDiagonal() * b);

@@ -1,13 +1,13 @@
-// Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
-// modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so
-// the reference conditions of the rest shape hold for every q_d. Let p_a = s_a + d_a, J_a and e_a be the
-// coefficients of p, of J and of the constant 1 at the spectral nodes a (modal_basis.h), and let
-// G_a = [e_a I, -[p_a]x, J_a]. Then
+// Local deformation by n modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
+// modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape.
+// Therefore the reference conditions of the rest shape hold for every q_d. Let p_a = s_a + d_a, J_a and e_a
+// be the coefficients of p, of J and of the constant 1 at the spectral nodes a (modal_basis.h), B_a the rows
+// of B for a, and G_a = [e_a I, -[p_a]x, J_a]. Then
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
 // f_r and f_d are the forces on (c, theta, q_s) and on q_d. S is a Schur complement, not the shape matrix of
-// Eq. (5). The reference shape s is not in the span of the fields phi; integrals of s alone are those of the
-// part (part/inertia.h).
+// Eq. (5). The current reference shape s is not in the span of the fields phi_a. Integrals of s alone are
+// therefore those of the mass points of the part (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>
@@ -19,9 +19,9 @@ namespace pliant {
 
 struct ModalWorkspace final : LocalWorkspace {
   // Stage positions(), at the spectral nodes.
-  Nodes D, D_dot;          ///< d and its rate
-  MatX<double> shape;      ///< blocks N x 3: s, J q_s_dot, Jdot q_s_dot, and ds/dq_k of each parameter k
-  MatX<double> at_points;  ///< these blocks at the points of the basis
+  Nodes D, D_dot;          ///< d and d_dot
+  MatX<double> shape;      ///< blocks N x 3: s, J q_s_dot, Jdot q_s_dot, and ds/dq_k of each parameter q_k
+  MatX<double> at_points;  ///< the same blocks at the points of the basis
   static constexpr Eigen::Index kS = 0, kS1 = 3, kS2 = 6, kJ = 9;  ///< first columns of the blocks
   auto s() const { return shape.middleCols<3>(kS); }
   auto s1() const { return shape.middleCols<3>(kS1); }
@@ -29,14 +29,14 @@ struct ModalWorkspace final : LocalWorkspace {
   auto J(Eigen::Index k) const { return shape.middleCols<3>(kJ + 3 * k); }
   // Stage masses().
   Inertia<double> undeformed;  ///< inertia of the part at d = 0
-  MatX<double> R;              ///< R^T B has the rows of C for theta and q_s; the rows for c are zero
+  MatX<double> R;              ///< R^T B: the rows of C for theta and q_s; the rows of C for c are zero
   MatX<double> M_rr, C;        ///< C: (6 + n_s) x n
   VecMax<double> scale;        ///< factors that scale the diagonal of M at d = 0 to 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< factorisation of scale S scale
   // Stage forces().
-  Nodes F;           ///< forces on the spectral nodes, N
-  VecX<double> f_r;  ///< forces of inertia, gravity and drag on (c, theta, q_s)
-  VecX<double> f_d;  ///< forces of elasticity, damping and drag on the modes
+  Nodes F;           ///< forces on the spectral nodes: inertial forces -m b, and those of push(), N
+  VecX<double> f_r;  ///< forces of inertia, gravity and drag on (c, theta, q_s), body frame
+  VecX<double> f_d;  ///< forces of elasticity, damping and drag on the amplitudes
   // Joints.
   MatX<double> P, C_P;  ///< P: modes at the attachment points. C_P: C P^T
 
@@ -51,8 +51,8 @@ struct ModalWorkspace final : LocalWorkspace {
 
 class ModalDeformation final : public LocalDeformation {
  public:
-  /// Uses the damping and the initial values of the settings. Throws std::invalid_argument if the initial
-  /// displacements are larger than the part.
+  /// Uses the damping and the initial values of the settings. Throws std::invalid_argument if an initial
+  /// displacement is larger than Part::size() or an initial velocity is not finite.
   ModalDeformation(const Part& part, const LocalSettings& settings, ModalBasis basis);
 
   const ModalBasis& basis() const { return basis_; }
@@ -83,10 +83,10 @@ class ModalDeformation final : public LocalDeformation {
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
-  /// Returns the displacements of a node of mesh() by unit amplitudes of the modes: 3 x n.
+  /// Returns the displacements of a node of mesh() for unit amplitudes of the modes: 3 x n.
   Eigen::Matrix3Xd modes_of_node(int node) const;
-  /// Replaces impulses on v_r and on the modes by the changes of v_r and q_d_dot. masses() must have run on
-  /// the workspace.
+  /// Replaces impulses on v_r (on_frame) and on the modes (on_modes) by the changes of v_r and q_d_dot that
+  /// these impulses cause. masses() must have run on the workspace.
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes, const LocalWorkspace& work) const;
 
  private:
@@ -101,7 +101,7 @@ class ModalDeformation final : public LocalDeformation {
   }
   /// Number of spectral nodes.
   Eigen::Index n_fields() const { return basis_.mass.size(); }
-  /// Returns the modes at a point: 3 x n.
+  /// Returns the displacements of a material point for unit amplitudes of the modes: 3 x n.
   MatX<double> modes_at(const NodeWeights& at) const;
   /// Computes w.shape: evaluates the reference shape at the points of the basis and projects the values.
   void project_shape(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, ModalWorkspace& w,
@@ -109,7 +109,7 @@ class ModalDeformation final : public LocalDeformation {
 
   ModalBasis basis_;
   Oscillators oscillators_;
-  std::vector<Material<Pack>> packs_;  // the points of the basis, if a parameter is dynamic
+  std::vector<Material<Pack>> packs_;  // the points of the basis; empty if no parameter is dynamic
 };
 
 }  // namespace pliant

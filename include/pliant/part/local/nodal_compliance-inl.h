@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns G of points, 3 rows for each point, from positions x of the nodes. x = s gives G0.
+/// Returns G of points, 3 rows for each point, from positions x of the n nodes; G0 if x is s. n_r: 6 + n_s.
 inline MatX<double> frame_at_points(const std::vector<NodeWeights>& points, const double* x,
                                     const NodalWorkspace& w, Eigen::Index n, Eigen::Index n_r) {
   const auto n_p = static_cast<Eigen::Index>(points.size());
@@ -36,8 +36,8 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
   // Solve the equations of nodal_deformation.h for unit impulses on v_r and on the points, one in each
-  // column. on_d is sum G^T F_d - f of each impulse; an impulse at a point acts on d alone, one on v_r is f.
-  // loads is sum G0^T F.
+  // column. An impulse at a point is F and F_d, because it acts on d alone; an impulse on v_r is f. on_d is
+  // sum G^T F_d - f, and loads is sum G0^T F.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();
   loads.rightCols(n_p) = G0.transpose();
@@ -47,7 +47,7 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   MatX<double> A(n_r + n_p, n_r + n_p);
   A.topRows(n_r) = w.a_response;
   A.bottomRows(n_p) = -G0 * w.kappa_response - G * w.a_response;
-  // Add the compliance 1/m of the nodes that two points share.
+  // Add the compliance 1/m of each node that two points share, times both weights.
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = 0; b < points.size(); ++b)
       for (std::size_t i = 0; i < points[a].node.size(); ++i)

@@ -1,4 +1,4 @@
-// Function bodies of NodalDeformation: construction, names and sizes of its coordinates.
+// Function bodies of NodalDeformation: construction, and names, units and values of the coordinates.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace pliant {
 
 PLIANT_INLINE double NodalWorkspace::condition() const {
-  // The smallest pivot is a cheap estimate of 1 / condition. The estimate suffices if it is not small.
+  // The smallest pivot is a cheap estimate of 1 / condition. If the pivot is small, rcond() replaces this
+  // estimate.
   constexpr double clearly_regular = 1e-3;
   return std::visit(
       [](const auto& lu) {
@@ -80,7 +81,8 @@ PLIANT_INLINE const char* NodalDeformation::unit(Eigen::Index k) const {
 }
 
 PLIANT_INLINE double NodalDeformation::cost() const {
-  // Microseconds. bench/soft_step_bench measures the times of nodes and triangles; the others are estimates.
+  // Microseconds. bench/soft_step_bench measures the times of a node and a triangle; the other two times are
+  // estimates.
   constexpr double node = 0.02, triangle = 0.008, tetrahedron = 0.02, curved = 0.15;
   const LocalMesh& m = mesh();
   const double elements = m.shell() ? triangle * static_cast<double>(m.triangles.cols())

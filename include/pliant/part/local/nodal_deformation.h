@@ -1,6 +1,6 @@
 // Local deformation at the nodes of a mesh, Eqs. (5) and (6): q_d consists of the displacements d of the
-// nodes, in the body frame of the part. The reference conditions are those of mean axes at the current shape
-// (include/pliant/part/local/README.md):
+// nodes, in the body frame, and of the own coordinates of an energy if there are any (local/nodal_energy.h).
+// The reference conditions are those of mean axes at the current shape (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
 // Let F be all forces on the nodes, F_d the forces among them that act on d alone, and f the generalised
 // forces on (c, theta, q_s) that are not forces on nodes. Then
@@ -26,36 +26,38 @@ namespace pliant {
 
 struct NodalWorkspace final : LocalWorkspace {
   // Stage positions().
-  VecX<double> x;      ///< p = s + d of the nodes, then the own coordinates of an energy (nodal_energy.h)
+  VecX<double> x;      ///< p = s + d of the nodes, then the own coordinates of an energy
   Nodes s;             ///< reference shape
-  Nodes u;             ///< velocity J q_s_dot + d_dot; empty if no parameter is dynamic, see rates_of_p()
-  MatX<double> J;      ///< 3N x n_s: a column for each parameter; x of all N nodes, then y, then z
-  Nodes s1, s2;        ///< s1 = J q_s_dot, s2 = Jdot q_s_dot; s2 is empty if s is linear in q_s
+  Nodes u;             ///< J q_s_dot + d_dot; empty if no parameter is dynamic, see rates_of_p()
+  MatX<double> J;      ///< ds/dq_s, 3N x n_s; rows: x of all N nodes, then y, then z
+  Nodes s1, s2;        ///< J q_s_dot and Jdot q_s_dot. Empty if n_s = 0; s2 also if s is linear in q_s
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // Stage masses().
   VecMax<double> violation;  ///< W^T d; zero if the reference conditions hold
   VecMax<double> scale;      ///< factors that scale the diagonal of H0 to 1
-  /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
+  /// Factorisation of the matrix scale K scale; of fixed size 6 x 6 if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // Stage forces(). Forces are in N.
   VecX<double> x_dot;  ///< rates of x in the body frame, for damping
-  /// f: forces of the energies that depend on p. f_d: F_d, forces of the energies that depend on d, and the
-  /// damping by alpha.
+  /// f: forces of the energies that depend on p. f_d: F_d, which are the forces of the energies that depend
+  /// on d, and the damping by alpha. Both include the damping by beta.
   VecX<double> f, f_d;
-  VecMax<double> frame_force_d;    ///< sum G^T F_d
+  /// sum G^T F_d, plus G^T of each force of push(), which the caller also adds to f_r of accelerations().
+  VecMax<double> frame_force_d;
   VecMax<double> frame_force_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
   VecMax<double> kappa;  ///< multipliers of the reference conditions
-  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one in each column.
+  // Joints: kappa and the change of v_r by unit impulses on v_r and on the attachment points, one impulse for
+  // each column.
   MatX<double> kappa_response, a_response;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
-  /// Positions and velocities that project_frames() (room project) saves while it finds the frame.
+  /// Storage of project_frames() (project/project.h): positions and velocities of the nodes.
   Nodes p_kept, u_kept;
 
-  /// Returns J q_s_dot + d_dot of n nodes.
+  /// Returns J q_s_dot + d_dot of n nodes: x of all nodes, then y, then z.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
   double condition() const override;
   /// Returns K^-1 b.
@@ -80,16 +82,17 @@ struct NodalWorkspace final : LocalWorkspace {
 
 class NodalDeformation final : public LocalDeformation {
  public:
-  /// Throws std::invalid_argument if the mesh or an energy cannot be made, or if the initial displacements
-  /// are larger than the part.
+  /// Throws std::invalid_argument if the mesh or an energy cannot be made, if an initial displacement is
+  /// larger than Part::size(), or if an initial velocity is not finite.
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
   /// Diagonal of the mass matrix of the local coordinates: the masses of all nodes along x, then y, then z,
-  /// then the inertia of coordinates that an energy adds.
+  /// then the inertia of the own coordinates of an energy.
   const VecX<double>& inertia() const { return inertia_; }
-  /// 1 / inertia.
+  /// 1 / inertia() of each coordinate.
   const VecX<double>& mobility() const { return mobility_; }
+  /// The nodes in packs of four.
   const std::vector<Material<Pack>>& packs() const { return packs_; }
   const std::vector<std::unique_ptr<NodalEnergy>>& energies() const { return energies_; }
   /// Whether all energies are quadratic in d, so that their stiffness is constant.
@@ -132,14 +135,15 @@ class NodalDeformation final : public LocalDeformation {
   /// Returns the violation of the conditions by displacements d and rates d_dot.
   ConditionViolation violation(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
                                const LocalWorkspace& work) const;
-  /// Returns sum W^T a over nodes. a: one row for each node.
+  /// Returns sum W^T a over nodes, 6 + n_s numbers. a: one row for each node.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
-  /// Computes to = from + sign G v_r of all nodes. Both have the layout of local coordinates; they may be the
-  /// same array.
+  /// Computes to = from + sign G v_r of all nodes. The arrays `from` and `to` have the layout of local
+  /// coordinates and may be the same array.
   void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
                             const double* from, double* to) const;
-  /// Transforms positions p and velocities u of all nodes from the current frame to a shifted and turned one:
-  /// p <- turn^T (p - shift), u <- turn^T u. shift (m) and turn have components in the current frame.
+  /// Transforms positions p and velocities u of all nodes from the current frame to a new frame:
+  /// p <- turn^T (p - shift), u <- turn^T u. The current frame gives the components of shift (m), the origin
+  /// of the new frame, and turn, its orientation.
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:
@@ -147,9 +151,9 @@ class NodalDeformation final : public LocalDeformation {
                                    LocalWorkspace& work) const override;
   void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
                          const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
-  /// Computes positions and rates if s is linear in q_s.
+  /// Computes s, J, s1 and u of the workspace if s is linear in q_s.
   void linear_positions(const VecX<double>& q_s, const VecMax<double>& q_s_dot, NodalWorkspace& w) const;
-  /// Computes f and f_d of the workspace: the elastic forces with their damping.
+  /// Computes f and f_d of the workspace: the elastic forces and their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
   /// Adds beta times the viscous forces of the energies to f and f_d.
   void add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const;

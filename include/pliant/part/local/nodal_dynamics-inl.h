@@ -19,7 +19,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns sum m [I, -[s]x, J]^T [I, -[s]x, J] over n nodes at positions s.
+/// Returns sum m [I, -[s]x, J]^T [I, -[s]x, J] over n nodes at positions s (at_s); J has n_s columns.
 inline MatMax<double> inertia_at_positions(const double* at_s, const double* mass, const NodalWorkspace& w,
                                            Eigen::Index n, int n_s) {
   using namespace node_sums;
@@ -74,7 +74,7 @@ inline void place_nodes(const double* mass, Eigen::Index n, NodalWorkspace& w) {
 
 /// The matrices of the reference conditions while they are assembled.
 struct ReferenceConditions {
-  MatMax<double> K, P;  ///< K = H - P^T, but H until P is complete; P = d(W^T d)/dq_s
+  MatMax<double> K, P;  ///< P = d(W^T d)/dq_s; K = H until P is complete, then K = H - P^T
 };
 
 /// Sums over nodes of derivatives of J and Jdot q_s_dot along one parameter q_j.
@@ -101,8 +101,8 @@ struct ShapeDerivativeSums {
   }
 };
 
-/// Adds the rows of the global parameters to P and to the rates 2 Wdot^T d_dot + Wddot^T d, from derivatives
-/// of the jets along each parameter.
+/// Adds the terms with derivatives of J and of Jdot q_s_dot along each parameter to P and to the rates
+/// 2 Wdot^T d_dot + Wddot^T d. These terms are in the rows of the global parameters.
 inline void add_shape_derivatives(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
                                   const VecMax<double>& q_s_dot, NodalWorkspace& w, MatMax<double>& P) {
   using namespace node_sums;
@@ -141,8 +141,8 @@ inline void add_shape_derivatives(const Part& part, const NodalDeformation& loca
   }
 }
 
-/// Adds the contributions of the global parameters to W^T d, H, P and the rates, except those of
-/// add_shape_derivatives(). W^T d has rows sum m s x d of rotation and sum m J^T d of parameters.
+/// Adds the contributions of the global parameters to W^T d, H, P and the rates, without those of
+/// add_shape_derivatives(). W^T d has the rows sum m s x d for theta and sum m J^T d for the parameters.
 inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot, bool linear,
                                NodalWorkspace& w, ReferenceConditions& conditions) {
   using namespace node_sums;
@@ -170,8 +170,8 @@ inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot
   if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
 }
 
-/// Factors K, scaled by the factors that scale the diagonal of H0 to 1. A parameter without inertia gets a
-/// unit row and column instead, so that it has no acceleration.
+/// Factors scale K scale, where scale H0 scale has a unit diagonal. The row and the column of a parameter
+/// without inertia are replaced by those of the unit matrix, and its entry of the rates by 0.
 inline void factor_conditions(const Part& part, int n_s, MatMax<double>& K, NodalWorkspace& w) {
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   w.without_inertia.reset();
@@ -274,7 +274,8 @@ PLIANT_INLINE void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<
   using namespace node_sums;
   NodalWorkspace& w = of(work);
   add_elasticity(w, pool);
-  // One loop adds inertial forces, gravity and drag to the elastic forces, and sums the forces on the frame.
+  // One loop adds inertial forces, gravity and drag to the elastic forces, and computes sum G^T F_d and
+  // sum G0^T F.
   const Eigen::Index n = n_nodes(), n_s = v_r.size() - 6;
   const VecMax<double> v = v_r;
   const FrameMotion frame(v, w, n);
@@ -346,7 +347,7 @@ PLIANT_INLINE void NodalDeformation::add_elasticity(NodalWorkspace& w, ThreadPoo
 PLIANT_INLINE void NodalDeformation::add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const {
   const Eigen::Index n = n_nodes(), size = n_d();
   auto damp = [&](NodalEnergy::Of of, const Coordinates& x, const Coordinates& x_dot, VecX<double>& f) {
-    VecX<double>& damping = w.force;  // used as scratch storage here
+    VecX<double>& damping = w.force;  // scratch storage here; forces() overwrites it later
     damping.setZero(size);
     for (std::size_t k = 0; k < energies_.size(); ++k)
       if (energies_[k]->of() == of) energies_[k]->add_viscous_force(x, x_dot, damping, w.buffers[k], pool);

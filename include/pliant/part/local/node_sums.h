@@ -40,14 +40,14 @@ struct VectorSum {
 inline Vec3<Pack> times(const Pack& m, const Vec3<Pack>& a) {
   return {m * a[0], m * a[1], m * a[2]};
 }
-/// Returns a vector with equal lanes.
+/// Returns the vector a in all lanes.
 inline Vec3<Pack> spread(const Vec3<double>& a) {
   return {Pack(a[0]), Pack(a[1]), Pack(a[2])};
 }
 inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
-/// Returns the cross product. Compilers do not inline the function of Eigen for Packs.
+/// Returns the cross product. Compilers do not inline Eigen's cross product of Packs.
 [[gnu::always_inline]] inline Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -86,7 +86,7 @@ struct FrameMotion {
 };
 
 /// Returns the sum of ds/dq_k . F over the n nodes: the generalised force on dynamic parameter number k. F:
-/// forces on the nodes in the layout of column(), N.
+/// forces on the nodes (N) in the layout of column().
 inline double along_column(const double* F, const NodalWorkspace& w, Eigen::Index n, int k) {
   Pack along(0.0);
   for_each_four(n, [&](const auto& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });

@@ -1,20 +1,20 @@
-// Weights of a patch of nodes around a material point of a part with nodes. A force at the point is spread
-// over the patch, so that its effect does not depend on the resolution of the mesh. The weights decrease
-// smoothly with the distance r, phi = (1 - r^2/R^2)^2 with the radius R, and reproduce the position of the
-// material point m at rest,
+// Weights w of a patch of nodes around a material point m. A force at the point is spread over the patch, so
+// that the effect of the force does not depend on the resolution of the mesh. Before a correction, w is
+// proportional to phi = (1 - r^2/R^2)^2, with the distance r of the node at rest and the radius R. The
+// corrected weights reproduce the position X(m) of the point at rest,
 //   sum w = 1,   sum w X = X(m),
-// so that a force keeps its torque.
+// so that the torque of the force is kept.
 #pragma once
 
 #include <pliant/part/local/local_mesh.h>
 
 namespace pliant {
 
-/// Returns weights over the nodes within a radius (m) of the point at rest. A point of the surface uses the
-/// nodes of the surface, in proportion to their areas; any other point uses all nodes, in proportion to their
-/// masses. A correction, for a solid at all nodes within the radius, makes the weights reproduce X(m). If
-/// there are fewer than five such nodes, or if no weights of moderate size reproduce X(m), returns
-/// mesh_weights(): the weights of the element or triangle around the point, empty inside a shell.
+/// Returns weights over the nodes within a radius (m) of the point at rest. For a point of the surface, phi
+/// multiplies the areas of the nodes of the surface; for any other point, phi multiplies the masses of all
+/// nodes. Then a correction, for a solid at all nodes within the radius, makes the weights reproduce X(m).
+/// Returns mesh_weights() instead if fewer than five nodes have a positive phi times area or mass, or if the
+/// corrected weights do not reproduce X(m) or have a sum of |w| above 4. The result is empty inside a shell.
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // The mesh pattern of balls: the lattice of a cube of 2m x 2m x 2m cells. The upper and lower faces of the
 // cube map to concentric rings, so that rims, edges and coordinate planes are mesh lines. Shell r of the
-// lattice consists of the points (i, j, k) with max(|i|, |j|, |k|) = r. Their directions are those of the
-// surface in the pattern with m = r.
+// lattice consists of the points (i, j, k) with max(|i|, |j|, |k|) = r. The directions of the points of
+// shell r are those of the surface of the pattern with m = r.
 #pragma once
 
 #include <algorithm>
@@ -16,16 +16,16 @@ namespace pliant {
 
 using LatticePoint = std::array<int, 3>;
 
-/// Returns the shell of a lattice point.
+/// Returns the number r of the shell of a lattice point.
 inline int ball_shell(const LatticePoint& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
 }
 
-/// Returns the direction of a lattice point other than the centre.
+/// Returns the direction (unit vector) of a lattice point. The point must not be the centre.
 Vec3<double> ball_direction(const LatticePoint& p);
 
-/// Shell m with its triangles, counter-clockwise seen from outside. Each square of the lattice is cut along
-/// the diagonal that points away from the middle of its face of the cube.
+/// Shell m with its triangles, counter-clockwise seen from outside. Each square of a face of the cube is cut
+/// along the diagonal that points away from the middle of the face.
 struct BallSurface {
   explicit BallSurface(int m);
   std::vector<LatticePoint> points;

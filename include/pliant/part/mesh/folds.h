@@ -1,6 +1,6 @@
-// Folds: a deformation that is too strong for the body turns a piece of the body inside out. The determinant
-// of the gradient of the chain is negative there. The determinants of the deformations are extreme on the
-// surface, so the surface is sampled.
+// Folds: a deformation that is too strong for the body turns a piece of the body inside out. In this piece
+// the determinant of the gradient of the chain is negative. The determinants of the deformations are extreme
+// on the surface, so only the surface is sampled.
 #pragma once
 
 #include <pliant/part/part.h>
@@ -12,10 +12,10 @@ namespace pliant {
 /// the chain folds the body over.
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
-/// Returns whether a piece of the surface is turned inside out: min_volume_ratio() is below -1e-12.
+/// Returns whether a piece of the surface is turned inside out: min_volume_ratio() is below -1e-12 or NaN.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
-/// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the
+/// Throws std::invalid_argument if folds() is true at these values. which: "rest" or "initial", for the
 /// message.
 void throw_if_folded(const Part& part, const ParameterValues<double>& values, const char* which);
 /// Throws the error of throw_if_folded().

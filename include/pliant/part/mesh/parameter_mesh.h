@@ -7,9 +7,10 @@
 
 namespace pliant {
 
-/// Returns u and v (rad) at the corners of the triangles of a shell. Angles of a triangle that crosses the
-/// seam continue beyond pi. A triangle with a corner at a pole becomes two triangles, so that all triangles
-/// cover the rectangle once. Throws std::invalid_argument if a triangle has no area on the rectangle.
+/// Returns the triangles of a shell with u and v (rad) at their corners. The angles of a triangle that
+/// crosses the seam are not confined to [-pi, pi]. A triangle with a corner at a pole becomes two triangles,
+/// so that all triangles together cover the rectangle once. Throws std::invalid_argument if the area of a
+/// triangle on the rectangle is not positive.
 ParameterMesh parameter_mesh(const LocalMesh& mesh);
 
 }  // namespace pliant

@@ -35,8 +35,8 @@ inline void torus_surface(int resolution, std::vector<Vec3<double>>& places,
     }
 }
 
-/// Sets the normals of a mesh from those of its vertices. A corner of a triangle gets the normal of the
-/// triangle instead if this differs from the normal of the vertex by more than the crease angle.
+/// Sets the normals of a mesh from the normals of its vertices. If the normal of a triangle and the normal of
+/// one of its vertices differ by more than the crease angle, this corner gets the normal of the triangle.
 inline void set_normals(TriangleMesh& mesh, std::vector<Vec3<double>> normals) {
   mesh.corners = mesh.triangles;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -98,7 +98,7 @@ PLIANT_INLINE TriangleMesh Surface::body_mesh(const Part& part, const ParameterV
 }
 
 PLIANT_INLINE SurfaceNodes surface_nodes(const LocalMesh& mesh) {
-  // Index of each node in surface.node; -1 for a node inside the body.
+  // Position of each node in surface.node; -1 for a node inside the body.
   std::vector<int> number(mesh.nodes.size(), -1);
   for (const int node : mesh.triangles.reshaped()) number[static_cast<std::size_t>(node)] = 0;
   SurfaceNodes surface;
@@ -128,8 +128,8 @@ PLIANT_INLINE TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::M
     const std::array<Vec3<double>, 3> corner{
         mesh.x.col(mesh.triangles(0, t)), mesh.x.col(mesh.triangles(1, t)), mesh.x.col(mesh.triangles(2, t))};
     for (std::size_t k = 0; k < 3; ++k) {
-      // Each triangle has its angle at the vertex as weight. The normals of a grid then do not depend on its
-      // diagonals.
+      // The weight of a triangle is its angle at the vertex. The normals of a grid then do not depend on the
+      // choice of its diagonals.
       const Vec3<double> e1 = corner[(k + 1) % 3] - corner[k], e2 = corner[(k + 2) % 3] - corner[k];
       const Vec3<double> normal = e1.cross(e2);
       const double area = normal.norm();

@@ -17,8 +17,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns two edges and the unit normal of a triangle, columns. The normal is zero if the triangle has no
-/// area.
+/// Returns two edges and the unit normal of a triangle as columns. The normal of a triangle without area is
+/// zero.
 inline Mat3<double> triangle_axes(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
   Mat3<double> columns;
   columns << b - a, c - a, (b - a).cross(c - a).normalized();

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Triangles are counter-clockwise seen from outside. Corners of one vertex may have different normals, so
-/// that the edges of a box stay sharp without duplicate vertices.
+/// Triangles are counter-clockwise seen from outside. The triangles at one vertex may have different normals
+/// there, so that the edges of a box are sharp without duplicate vertices.
 struct TriangleMesh {
   Eigen::Matrix3Xd x;          ///< vertices, m
   Eigen::Matrix3Xd normals;    ///< unit normals
