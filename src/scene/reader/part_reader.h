@@ -36,7 +36,7 @@ class PartReader {
   /// Returns whether the matrix [[...], ...] is symmetric; differing numbers are reported.
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
-  /// Returns the value of "fixed" or "motion" if the motion of the part is prescribed, or null if it is free.
+  /// Returns the value of "fixed" or "motion", or null if the part is neither fixed nor moved as prescribed.
   const JsonValue* fixed_or_motion() const;
   void read_motion(const Reader& r);
   void check_rigid_keys();
