@@ -16,7 +16,8 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: the materials of the scene by name. make_factor: see LocalSettings. end: end of the run, s.
+  /// materials: the materials of the scene by name. make_factor: makes the sparse factorisation for modes of
+  /// a mesh. end: end of the run, s.
   PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
              const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
       : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
