@@ -8,7 +8,7 @@
 
 namespace pliant_cli {
 
-/// Thrown if a resource of the machine, such as a graphics library, is missing. The exit code is 8.
+/// Thrown if a resource of the machine, for example a graphics library, is missing. The exit code is 8.
 class ResourceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -25,9 +25,9 @@ CLI::Validator count_up_to(int max);
 struct PictureSize {
   int width = 0, height = 0;
 };
-/// Returns a validator that accepts sizes such as "640x480", with width and height from 1 to 8192.
+/// Returns a validator that accepts sizes like "640x480", with width and height from 1 to 8192.
 CLI::Validator picture_size();
-/// Returns the size that a text such as "640x480" gives; width and height are 0 if the text is no valid size.
+/// Returns the size of a text like "640x480"; width and height are 0 if the text is not a valid size.
 PictureSize parse_picture_size(const std::string& text);
 
 /// The texts of --frames (default: all frames) and --shard (empty: no shard); FrameRange explains them.

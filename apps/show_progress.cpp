@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Returns a text such as "42 s", "3 min 5 s" or "2 h 10 min".
+// Returns a duration as text, for example "42 s", "3 min 5 s" or "2 h 10 min".
 std::string duration(double seconds) {
   const auto whole = static_cast<long>(std::ceil(seconds));
   if (whole < 100) return std::to_string(whole) + " s";
@@ -64,7 +64,7 @@ class StageProgress : public pliant::Progress {
 
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   double fraction() const { return total_ > 0 ? std::min(1.0, done_ / total_) : 1; }
-  // Returns a text such as "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left".
+  // Returns the progress as text, for example "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left".
   std::string numbers() const {
     const double wall = elapsed();
     std::string text =

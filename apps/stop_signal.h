@@ -1,5 +1,5 @@
-// Signals that stop the program. After the first signal the program finishes its files and ends; a second
-// signal ends it at once.
+// Signals that stop the program. After the first signal the program finishes the current file or step and
+// ends. A second signal ends the program at once.
 #pragma once
 
 namespace pliant_cli {
@@ -7,7 +7,7 @@ namespace pliant_cli {
 /// Starts to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU. Ignores SIGPIPE and SIGXFSZ from now on: a failed
 /// write is reported by the function that writes.
 void catch_stop_signals();
-/// Returns the number of the caught signal; 0 for none.
+/// Returns the number of the first caught signal, or 0 if no signal was caught.
 int stop_signal();
 
 }  // namespace pliant_cli

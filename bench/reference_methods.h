@@ -1,6 +1,5 @@
 // Reference solutions of smooth motions to nearly full precision, by two methods of order 8. The engine
-// contains neither method. For equal accuracy they need hundreds of evaluations where RK4 needs millions.
-// Both use accelerations only, without projection.
+// contains neither method. Both methods use accelerations only, without projection.
 #pragma once
 
 #include <array>
@@ -26,7 +25,7 @@ class SmoothMotion {
   /// Advances from time t to t + h.
   void step(double t, double h) {
     // The change of y within a step is computed separately from y, so that the rounding of y does not affect
-    // it. It is added to y by Kahan's compensated summation.
+    // the change. Kahan's compensated summation adds the change to y.
     const VecX<double> compensated = change(t, h) + compensation_;
     const VecX<double> sum = y_ + compensated;
     compensation_ = compensated - (sum - y_);
@@ -127,9 +126,9 @@ class Collocation final : public SmoothMotion {
       if (!(change_norm < smallest_change)) break;
       smallest_change = change_norm;
     }
-    // If the iteration diverges, there is no solution. The threshold is large because the iteration does not
-    // converge to 1e-8 for the problem "four-bars" (problems.h) near its singular positions. The accuracy of
-    // a solution is known from its comparison with that of the other method.
+    // If the iteration diverges, the result is NaN. The threshold is large because the iteration does not
+    // converge to 1e-8 for the problem "four-bars" (problems.h) near its singular positions. The comparison
+    // with the other method shows the accuracy of a solution.
     if (!(smallest_change <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }

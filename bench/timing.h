@@ -12,16 +12,17 @@
 
 namespace pliant::bench {
 
-/// Clock of the processor time of this process. Other processes on the machine disturb it less than
-/// wall-clock time. Use it for calls in one thread that are too long to fit between such disturbances.
+/// Clock of the processor time of this process, summed over its threads. Other processes disturb this time
+/// less than the wall-clock time. The clock is for long calls in one thread, which other processes interrupt.
 struct ProcessorClock {
   using duration = std::chrono::duration<double>;
   using time_point = std::chrono::time_point<ProcessorClock, duration>;
   static time_point now() { return time_point(duration(static_cast<double>(std::clock()) / CLOCKS_PER_SEC)); }
 };
 
-/// Returns the seconds per call of f: the minimum over `repeats` batches. A batch contains as many calls as
-/// fill `batch` seconds. Short batches can run undisturbed between other work of the machine.
+/// Returns the seconds per call of f: the minimum over `repeats` batches. A batch is a number of calls that
+/// together need at least `batch` seconds. Short batches can run undisturbed between other work of the
+/// machine.
 template <class Clock = std::chrono::steady_clock, class F>
 double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   auto elapsed = [&](long calls) {
@@ -66,7 +67,7 @@ inline double multiply_add_peak() {
 }
 
 /// Returns the bandwidth in bytes per second of a = b + s c over arrays of `bytes` bytes in total. The
-/// default is larger than any cache.
+/// default, 192 MiB, is larger than the caches of most processors.
 inline double triad_bandwidth(std::size_t bytes = std::size_t{3} << 26) {
   const std::size_t n = bytes / (3 * sizeof(double));
   std::vector<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);

@@ -1,4 +1,4 @@
-// Random numbers for the law tests, identical on every machine: parameters within their ranges, and material
+// Pseudorandom numbers for tests, identical on every machine: parameters within their ranges, and material
 // points.
 #pragma once
 
@@ -22,22 +22,25 @@ class Draws {
     state_ ^= state_ << 17;
     return from + (to - from) * (static_cast<double>(state_ >> 11) * 0x1.0p-53);
   }
-  /// Returns one of from, ..., to.
+  /// Returns an integer from `from` to `to`, both included.
   int integer(int from, int to) {
     return std::min(to, static_cast<int>(uniform(from, static_cast<double>(to) + 1)));
   }
+  /// Returns a vector with components between -size and size.
   Vec3<double> vector(double size) {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }
 
-  /// Returns a value in the dynamic range of the parameter: lengths around their default, other parameters at
-  /// most 3 from it.
+  /// Returns a value of a parameter. If its dynamic range is relative to the rest value, the result is 0.6 to
+  /// 1.7 times the default. Otherwise the result is in the dynamic range and differs by at most 3 from the
+  /// default.
   double parameter(const ParameterSpec& spec) {
     if (spec.relative) return spec.standard * uniform(0.6, 1.7);
     return uniform(std::max(spec.dynamic.min, spec.standard - 3),
                    std::min(spec.dynamic.max, spec.standard + 3));
   }
 
+  /// Returns a material point of a shape with this mesh pattern, on the surface or inside.
   Material<double> material(MeshPattern pattern) {
     const double tall = pattern == MeshPattern::torus ? kPi : kPi / 2;
     return material_at(uniform(-tall, tall), uniform(-kPi, kPi), uniform(0, 1));

@@ -12,6 +12,7 @@
 
 namespace pliant::test {
 
+/// Advances a simulation by the time `end` (s) in equal steps.
 inline void run(Simulation& simulation, double end, int steps) {
   for (int i = 0; i < steps; ++i) simulation.step(end / steps);
 }
@@ -33,8 +34,8 @@ inline TimeFunction wave(double mean, double amplitude, double rate, double phas
   return TimeFunction(impl);
 }
 
-/// Returns the slope of log(error) over log(step), by least squares. Each error belongs to half the step of
-/// the previous one.
+/// Returns the slope of log(error) over log(step), by least squares. The step of each error is half the step
+/// of the previous error.
 inline double observed_order(const std::vector<double>& errors) {
   const double n = static_cast<double>(errors.size());
   double x = 0, y = 0, xx = 0, xy = 0;
@@ -48,8 +49,8 @@ inline double observed_order(const std::vector<double>& errors) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// Returns the elliptic integral K(sin^2(theta / 2)) of a pendulum's period, by the arithmetic-geometric
-/// mean.
+/// Returns the complete elliptic integral K(m), m = sin^2(theta / 2), by the arithmetic-geometric mean. A
+/// pendulum with the amplitude theta (rad) has the period 4 K sqrt(length / g).
 inline double elliptic_K(double theta) {
   double a = 1, b = std::cos(theta / 2);
   while (std::abs(a - b) > 1e-15 * a) {
@@ -60,14 +61,14 @@ inline double elliptic_K(double theta) {
   return kPi / (2 * a);
 }
 
-/// Adds a part whose shape and chain are chosen at run time.
+/// Adds a part. shape: name of its shape; chain: names of its deformations; density: kg/m^3.
 inline Part& add(MultiBody& body, const std::string& name, const std::string& shape,
                  const std::vector<std::string>& chain, double density) {
   return body.add(make_part(name, shape, chain, density));
 }
 
-/// Adds a solid in free flight with all parameters dynamic: scales, taper, twist, shear and bend, with
-/// stiffness.
+/// Adds a solid whose parameters are all dynamic, with stiffness: semi-axes, taper, twist, shear and bend.
+/// Sets the gravity of the MultiBody to zero.
 inline Part& tumbling_solid(MultiBody& body, const std::string& name = "solid") {
   body.gravity.setZero();
   Part& part = add(body, name, "ellipsoid", {"taper", "twist", "shear", "bend"}, 1000);

@@ -9,7 +9,8 @@
 
 namespace pliant::test {
 
-/// Springs between the displacements of neighbouring nodes: 1/2 k sum |d_i - d_j|^2.
+/// The energy 1/2 k sum |d_i - d_j|^2 over the edges (i, j) of a closed mesh; d_i: displacement of node i, m;
+/// k: stiffness, N/m. The stiffness matrix is not implemented: add_stiffness() adds nothing.
 class Net final : public NodalEnergy {
  public:
   Net(const LocalMesh& mesh, double k) : triangles_(mesh.triangles), n_(mesh.X.rows()), k_(k) {}
@@ -54,7 +55,7 @@ inline LocalSettings net(int resolution, double k) {
   return settings;
 }
 
-/// Smooth displacements and velocities of nodes, as functions of their rest positions.
+/// Smooth displacements (m) and velocities (m/s) of nodes, as functions of their rest positions X (m).
 inline Vec3<double> sample_displacement(const Vec3<double>& X) {
   return 0.03 * Vec3<double>(std::sin(3 * X[0] + X[1]), std::cos(2 * X[2]) * X[0], X[1] * X[2] + 0.2);
 }

@@ -22,8 +22,8 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
-// Estimates the wall-clock time of a run, s, from its first steps. Stops these steps after 0.05 s of
-// wall-clock time.
+// Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
+// run for 0.05 s of wall-clock time, at least one step, and extrapolates their time to the end of the run.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -38,7 +38,8 @@ double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedul
   return simulation.time() > 0 ? seconds / simulation.time() * schedule.end() : 0;
 }
 
-// Returns a text such as ", 2 obstacles of 644 triangles"; empty if there are no obstacles.
+// Returns the number of obstacles as text, for example ", 2 obstacles of 644 triangles", or an empty text if
+// there are no obstacles.
 std::string obstacle_text(const pliant::MultiBody& body) {
   const auto& obstacles = body.contact.obstacles;
   std::int64_t triangles = 0;

@@ -1,4 +1,4 @@
-// pliant list: prints the shapes, deformations, laws, joints, methods and functions that the library knows.
+// pliant list: prints the shapes, deformations, laws, joints, methods and functions of the library.
 #include <cmath>
 #include <iomanip>
 #include <iostream>

@@ -46,7 +46,7 @@ fs::path folder_of(const RunCommand& command) {
 
 // Sets the options of the command line in the scene. A resumed run keeps its old settings, except those that
 // the command line sets. --step removes the tolerance. --tolerance without --integrator selects "auto" if the
-// method of the scene has no error control. "auto" without a tolerance gets the standard one.
+// method of the scene has no error control. "auto" without a tolerance gets the standard tolerance.
 void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& previous,
                    pliant::Scene& scene) {
   if (previous) {

@@ -1,4 +1,4 @@
-// Adds a deformation: a wave along the axis, in one struct. It works in chains like any other deformation.
+// Adds a deformation: a wave along the axis, in one struct. Chains accept the wave like other deformations.
 #include <cstdio>
 
 #include <pliant/pliant.h>

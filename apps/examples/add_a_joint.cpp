@@ -1,4 +1,4 @@
-// Adds a joint: a bead on a helical wire, in one struct. The solver treats it like any other joint.
+// Adds a joint: a bead on a helical wire, in one struct. The solver treats the joint like any other joint.
 #include <cstdio>
 
 #include <pliant/pliant.h>

@@ -1,4 +1,4 @@
-// Adds a shape: an egg, in one struct. The engine simulates it like any other shape.
+// Adds a shape: an egg, in one struct. The engine simulates the egg like any other shape.
 #include <cstdio>
 
 #include <pliant/pliant.h>

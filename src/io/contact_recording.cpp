@@ -23,7 +23,7 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
   numbers.insert(numbers.end(), {x[0], x[1], x[2]});
 }
 
-/// Returns the number of rows of a table up to time t (s).
+/// Returns the number of rows before the first row whose time is later than t (s).
 std::int64_t rows_until(const std::filesystem::path& path, double t) {
   const NpyReader table(path);
   std::vector<double> row(at(table.columns()));
@@ -35,8 +35,8 @@ std::int64_t rows_until(const std::filesystem::path& path, double t) {
   return rows;
 }
 
-/// Writes a table as CSV. The first column is the time. The next `names` columns are indices into names_of
-/// and become names.
+/// Writes the table `from` as the CSV file `to`. The first column is the time. The next `names` columns are
+/// indices into names_of and become names. Throws RecordingMismatch if the table does not fit.
 void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<Column>& columns, const std::vector<std::string>& names_of,
                  std::size_t names) {

@@ -11,8 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxSteps = 1e12;
-/// A frame whose distance from the end of a step is at most this fraction of the step is at the end of the
-/// step.
+/// Largest distance of a frame from the end of a step, relative to the step, at which the frame counts as
+/// being at the end of the step.
 constexpr double kOnStep = 1e-6;
 
 void require(bool good, const char* name, double value, const char* expected) {
@@ -20,8 +20,8 @@ void require(bool good, const char* name, double value, const char* expected) {
     throw std::invalid_argument(std::string(name) + " " + number_text(value) + " must be " + expected);
 }
 
-// Returns end / step, rounded to the nearest integer if it is equal up to rounding errors, or else rounded
-// up.
+// Returns end / step: the nearest integer if they differ by rounding errors only, or else rounded up. Throws
+// std::invalid_argument if an argument is out of range, or if there are more than 1e12 steps or frames.
 double steps_between(double end, double step, double rate) {
   require(std::isfinite(end) && end >= 0, "the end time", end, "a number of seconds >= 0");
   require(std::isfinite(step) && step > 0, "the step", step, "a number of seconds > 0");

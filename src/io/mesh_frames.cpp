@@ -11,7 +11,7 @@ namespace pliant {
 void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene,
                        const Model& model, const Recording& recording, double frame_rate,
                        const std::vector<std::int64_t>& frames, Progress& progress) {
-  // An .obj file cannot store values.
+  // An .obj file cannot store the values of the colouring.
   FrameMeshes meshes(
       scene, model, format == MeshFormat::obj ? FrameMeshes::Values::omitted : FrameMeshes::Values::included);
   progress.begin("meshes", static_cast<double>(frames.size()), "frames");

@@ -84,8 +84,8 @@ int cached_contact_count() {
   return static_cast<int>(contact_cache_columns().size());
 }
 
-/// The range of a state's rows in supports.npy: first, and one past the last. Both are -1 if its row of
-/// modes.npy is damaged.
+/// The rows of supports.npy that belong to a state: the first, and one past the last. Both are -1 if the row
+/// of the state in modes.npy is damaged.
 struct CachedContactRows {
   std::int64_t first = -1, end = -1;
 };
@@ -248,7 +248,7 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
   VecX<double> q(low.q.size());
   auto fill = [&](int first, int count) {
     auto of = [&](auto& all) { return all.segment(first, count); };
-    // The part of the displacement that is not due to the rate and the acceleration at the start.
+    // The displacement minus the displacement due to the rate and the acceleration at the start.
     const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
     const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
     const double pushed =
@@ -290,7 +290,7 @@ State Recording::at(double t) const {
   if (after == 0) return state(0);
   State low = state(after - 1);
   const State high = state(after);
-  // A frame at the end of a step shows the state there, also if the two times differ by rounding.
+  // A frame at the time of a recorded state shows this state, also if the two times differ by rounding.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;

@@ -1,5 +1,5 @@
-// A state within a long step, for pictures and meshes. It is computed by a shorter step of order 8 from the
-// start of the long step, so that it is as accurate as the recorded states.
+// A state within a long step, for pictures and meshes. A shorter step of order 8 from the start of the long
+// step computes this state, so that it is as accurate as the recorded states.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,9 @@
 
 namespace pliant {
 
-/// Returns the state at a fraction x (0 to 1) of the step from `low` to `high`. between: q interpolated at x
-/// = 0.5. Returns nothing if a part deforms locally, or if the explicit method does not lead from `low` to
-/// `high` much more accurately than interpolation, for example because of an impact or a stiff force within
-/// the step.
+/// Returns the state at a fraction x (0 to 1) of the step from `low` to `high`, or nothing if a part deforms
+/// locally. between: coordinates q interpolated at x = 0.5. Also returns nothing if the explicit step fails
+/// or is not much more accurate than the interpolation, for example with an impact or a stiff force.
 std::optional<State> step_between(const Model& model, const State& low, const State& high, double x,
                                   const VecX<double>& between);
 

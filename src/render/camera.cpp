@@ -32,8 +32,8 @@ Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect, double
   const Eigen::Vector3d right = camera.up.cross(back).normalized(), up = back.cross(right);
   const double tan_y = kFill * std::tan(camera.field_of_view * kDegree / 2), tan_x = tan_y * aspect;
   // A corner at (x, y, z) in the axes right, up, back is inside if |x - cx| <= tan_x (d - z) and
-  // |y - cy| <= tan_y (d - z). These are four bounds for each corner. They are linear in the distance d and
-  // in the shift (cx, cy) of the target.
+  // |y - cy| <= tan_y (d - z). d is the distance of the eye, and (cx, cy) the shift of the target. These are
+  // four bounds for each corner, linear in d, cx and cy.
   double right_bound = 0, left_bound = 0, top_bound = 0, bottom_bound = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d p =

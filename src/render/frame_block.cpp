@@ -71,8 +71,8 @@ Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const 
   return m.cast<float>();
 }
 
-// Rounds a size up to an integer power of 2^(1/4). Small changes of a box then keep the texels of the shadow
-// map and of the contact map, so that shadows do not flicker.
+// Rounds a size up to an integer power of 2^(1/4). Small changes of a box then do not change the texels of
+// the shadow map and of the contact map, so that shadows do not flicker.
 double steady_size(double size) {
   return std::exp2(std::ceil(4 * std::log2(size)) / 4);
 }

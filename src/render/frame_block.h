@@ -15,7 +15,7 @@ struct FrameBlock {
   Eigen::Matrix4f shadow;   ///< to [0, 1]^3: position on the shadow map, and depth along the key light
   Eigen::Matrix4f contact;  ///< to [0, 1]^3: position on the contact map, and height over the ground
   Eigen::Vector4f eye;      ///< position of the eye, m; w: distance of the near plane, m
-  Eigen::Vector4f to_key;   ///< unit vector; w: offset of shadow lookups along the normal of a body, m
+  Eigen::Vector4f to_key;   ///< unit vector to the key light; w: offset of shadow lookups along normals, m
   Eigen::Vector4f key;
   Eigen::Vector4f sky;  ///< w: height over the ground up to which the ground darkens bodies, m
   Eigen::Vector4f bounce;

@@ -27,6 +27,8 @@ struct MapTarget {
 class Pipeline {
  public:
   Pipeline(const GlContext& context, int width, int height);
+  /// Returns the image of a picture. Throws std::invalid_argument for a setting of the picture that is out of
+  /// range, std::runtime_error if OpenGL fails.
   Image draw(const Picture& picture);
 
  private:
@@ -42,7 +44,7 @@ class Pipeline {
   int width_, height_;
   gl::Program shadow_program_, height_program_, contact_program_, body_program_, ground_program_,
       background_program_, track_program_;
-  std::unique_ptr<gl::Program> leveled_program_;  // for bodies coloured by values; created at the first one
+  std::unique_ptr<gl::Program> leveled_program_;  // for bodies coloured by values; created at the first use
   MapTarget shadow_, heights_, contact_;
   gl::Framebuffer target_;
   gl::Renderbuffer color_, depth_;

@@ -29,7 +29,7 @@ class Renderer::Impl {
       const GlContext::Current current(context);
       pipeline.reset();
     } catch (const std::runtime_error&) {
-      // The objects are destroyed with the context; they cannot be deleted while it is not current.
+      // The GL objects cannot be deleted, because the context is not current. They end with the context.
       pipeline.release();  // NOLINT(bugprone-unused-return-value)
     }
   }

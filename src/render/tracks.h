@@ -1,6 +1,6 @@
 // The tracks of a picture in one vertex buffer. Points that are less than one sample from the previous kept
 // point are left out. The last point of a track, points behind the near plane and the first point after them
-// are always kept.
+// are always kept. A track of one point is drawn as a dot.
 #pragma once
 
 #include <vector>

@@ -11,8 +11,8 @@ namespace pliant {
 
 namespace {
 
-/// Returns whether a character is a control character, a line separator or a byte-order mark, or changes the
-/// writing direction of the following text.
+/// Returns whether a character is a control character, a line or paragraph separator, a byte-order mark, or a
+/// mark that changes the writing direction.
 bool is_unsafe(char32_t c) {
   return c < 0x20 || (c >= 0x7F && c <= 0x9F) || c == 0x200E || c == 0x200F || (c >= 0x2028 && c <= 0x202E) ||
          (c >= 0x2066 && c <= 0x2069) || c == 0xFEFF;

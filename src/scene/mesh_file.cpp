@@ -75,8 +75,8 @@ MeshFile read_mesh_file(const std::filesystem::path& file) {
   read_text_file(file.string(), kMaxBytes);  // throws FileError with the reason if the file cannot be read
 
   Assimp::Importer importer;
-  // ObstacleMesh merges vertices at equal positions; the importer would also merge vertices that are only
-  // near.
+  // The importer is not asked to join vertices: it would also merge vertices that are only near each other.
+  // ObstacleMesh merges the vertices at equal positions.
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr)

@@ -29,7 +29,7 @@ namespace pliant {
 
 namespace {
 
-/// Returns the colour of part i if the scene gives it none: one of eight distinguishable tones.
+/// Returns the default colour of part i: tone i modulo 8 of eight distinguishable tones.
 Color palette(std::size_t i) {
   static constexpr std::array<Color, 8> tones{{{0.85, 0.47, 0.20},
                                                {0.24, 0.49, 0.70},
@@ -42,8 +42,8 @@ Color palette(std::size_t i) {
   return tones[i % tones.size()];
 }
 
-/// Reads a validated document. Faults found while reading are added to the diagnostics; faulty values are
-/// skipped.
+/// Makes a scene from a validated document. Faults found while reading are added to the diagnostics. Faulty
+/// values are skipped.
 class SceneReader {
  public:
   SceneReader(const JsonDocument& document, MeshFolder folder, Diagnostics& diagnostics)
@@ -166,9 +166,9 @@ class SceneReader {
     scene_->appearance.push_back(look);
   }
 
-  /// Warns if the surface mesh of a part is too coarse to show its twist.
+  /// Warns if the surface mesh of a part has fewer than 8 edges per turn of its twist.
   void check_mesh(const Reader& r, const Part& part, int resolution) {
-    double turns = 0;  // of one end relative to the other; twist.angle is the angle between middle and end
+    double turns = 0;  // of one end relative to the other end; twist.angle is the angle from middle to end
     for (int i = 0; i < part.parameters().size(); ++i) {
       const Parameter& p = part.parameters()[i];
       if (p.name.rfind("twist", 0) == 0)  // "twist.angle", "twist2.angle"
@@ -273,7 +273,7 @@ class SceneReader {
   Scene* scene_ = nullptr;
 };
 
-/// Returns the FNV-1a hash of a text.
+/// Returns the 64-bit FNV-1a hash of a text.
 std::uint64_t fnv1a_hash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) {
@@ -283,8 +283,8 @@ std::uint64_t fnv1a_hash(const std::string& text) {
   return hash;
 }
 
-/// Applies the overrides, validates and reads the document. The hash of the scene is that of the text, the
-/// overrides and the mesh files.
+/// Returns the scene of a document after the overrides. The hash of the scene covers the text, the overrides,
+/// and the vertices and triangles of the mesh files. Throws SceneError if the scene has errors.
 std::unique_ptr<Scene> make_scene(JsonDocument document, const std::vector<std::string>& overrides,
                                   MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
   const MeshFolder folder{std::filesystem::path(document.name()).parent_path(), files == MeshFiles::of_a_run};

@@ -10,8 +10,7 @@
 namespace pliant {
 
 void SceneFaults::add(const JsonValue& at, std::string message, Severity severity) {
-  // When the storage is full, a fault is only counted. Then the search of the document for its place is not
-  // necessary.
+  // When the storage of the diagnostics is full, a fault is only counted, and its place is not searched for.
   diagnostics_.add(diagnostics_.full() ? Diagnostic{"", 0, 0, "", "", severity}
                                        : document_.fault(at, std::move(message), severity));
 }

@@ -1,6 +1,5 @@
-// Faults found while a validated document is read, for example unknown part names. Each fault is reported at
-// its value, as
-//   value; the fault; expected ...; nearest name
+// Faults found while a validated document is read, for example unknown part names. A message has the form
+//   value; fault; expected ...; nearest name
 #pragma once
 
 #include <string>
@@ -24,15 +23,16 @@ class SceneFaults {
   void value(const JsonValue& at, const std::string& message);
   /// Adds a warning at a value; the message begins with the value.
   void warn(const JsonValue& at, const std::string& message);
-  /// Adds an error at the place of a value that the message does not show: an object, a long array.
+  /// Adds an error at a value; the message does not contain the value. For objects and long arrays.
   void place(const JsonValue& at, const std::string& message);
-  /// Adds an error at a key of an object.
+  /// Adds an error at a key of an object; the message does not contain the value.
   void key(const JsonValue& object, const std::string& key, const std::string& message);
 
-  /// Adds the error "name given twice" at `again`, a name that the value `first` also has.
+  /// Adds the error "name given twice" at the name `again`. first: the first value with this name; the
+  /// message contains its line and column, or its --set option.
   void twice(const JsonValue& first, const JsonValue& again);
-  /// Adds the error of a name that is not among `names`. kind: kind of thing that has such a name, for
-  /// example "part".
+  /// Adds the error that a name is not one of `names`, with a name_hint(). kind: noun for the named thing,
+  /// for example "part".
   void unknown(const JsonValue& name, const std::string& kind, const std::vector<std::string>& names);
 
  private:
@@ -42,11 +42,11 @@ class SceneFaults {
   Diagnostics& diagnostics_;
 };
 
-/// Returns a computed number with 4 significant digits.
+/// Returns a number as text, rounded to 4 significant digits.
 std::string brief(double x);
 
-/// Returns "; did you mean "NAME"?" for the nearest name, or "; expected one of "A", "B"" with the first 32
-/// names if no name is near.
+/// Returns "; did you mean "NAME"?" for the name nearest to a word. If no name is near, returns "; expected
+/// one of "A", "B"" with the first 32 names, or an empty text if `names` is empty.
 std::string name_hint(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace pliant

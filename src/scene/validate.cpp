@@ -20,7 +20,7 @@ using schema::Type;
 using TypeKind = Type::Kind;
 using ValueKind = JsonValue::Kind;
 
-/// For each key, the places of the records that declare it, as pointer patterns such as "/parts/*".
+/// For each key, the records that declare the key, as patterns of JSON pointers, for example "/parts/*".
 using Places = std::map<std::string, std::vector<std::string>>;
 
 /// Adds the keys of all records inside a type. at: pointer pattern of the values of this type.
@@ -310,7 +310,7 @@ class Validator {
     }
   }
 
-  /// Reports an unknown key. Returns the key that is probably meant, or an empty text if no key is similar.
+  /// Reports an unknown key. Returns the most similar key of the record, or an empty text if none is similar.
   std::string unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
     std::vector<std::string> keys;
     if (!tag.empty()) keys.push_back(tag);

@@ -3,7 +3,7 @@
 #   components    find_package with all of COMPONENTS
 #   absent        find_package with a component that does not exist: must fail with a message that names the component
 #   pkg-config    pliant.pc of PREFIX
-#   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
+#   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, because another build takes minutes
 #   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, built with the installation PREFIX
 # GENERATOR, CXX and LAUNCHER are those of the calling build.
 cmake_minimum_required(VERSION 3.25)

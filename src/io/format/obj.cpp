@@ -80,8 +80,8 @@ std::string group_name(const std::string& name) {
   return group;
 }
 
-// Writes the lines of one mesh. vertex, normal: numbers of its first vertex and its first normal in the file;
-// OBJ counts from 1.
+// Writes the lines of one mesh. vertex, normal: numbers in the file, from 1, of the first vertex and the
+// first normal of the mesh.
 void add_mesh(Block& block, const TriangleMesh& mesh, std::int64_t vertex, std::int64_t normal) {
   for (Eigen::Index i = 0; i < mesh.x.cols(); ++i) {
     char* at = block.line();

@@ -13,7 +13,7 @@ BuildInfo build_info() {
   const std::string compiler = "gcc " __VERSION__;
 #endif
 #if defined(__x86_64__)
-  // With FMA the system's sin, cos, pow and log use other instructions, which give other last bits.
+  // With FMA, sin, cos, pow and log of the C library use other instructions, which change the last bits.
   const std::string processor = __builtin_cpu_supports("fma") ? "x86-64 with FMA" : "x86-64";
 #elif defined(__aarch64__)
   const std::string processor = "arm64";

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTighter = 10;  // tolerance of the run / tolerance of its repetition
 
-/// Replaces a maximum by a larger value; NaN is kept.
+/// Replaces a maximum by a larger value or by NaN. A maximum that is NaN stays NaN.
 void raise_max(double& max, double value) {
   if (!(value <= max) && !std::isnan(max)) max = value;
 }
@@ -54,7 +54,8 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// While the object lives, the longest contact step at `tolerance` is half of that at the original tolerance.
+/// While the object exists, the longest contact step at `tolerance` is half the longest contact step at the
+/// original tolerance.
 class HalfStepsInContact {
  public:
   HalfStepsInContact(ContactSettings& settings, double tolerance, double original_tolerance)

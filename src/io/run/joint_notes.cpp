@@ -57,7 +57,8 @@ int rows_without_direction(const JointModel& joint, const Workspace<double>& wor
   return count;
 }
 
-/// Returns whether joint j, whose gap is given (m), is open (Gaps in joint_notes.h).
+/// Returns whether joint j with a gap (m) is open. A joint is open while it closes; without projection, only
+/// if the gap is also larger than kClosedGap times the length of the joint.
 bool is_open(const Simulation& simulation, int j, double gap) {
   if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
   const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];

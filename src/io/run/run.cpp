@@ -162,7 +162,7 @@ void Run::begin_recording() {
     note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
          number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
   }
-  write_run_record(*folder_ / kRunFile, record_);  // run.json marks the folder as that of a run
+  write_run_record(*folder_ / kRunFile, record_);  // run.json marks the folder as the folder of a run
   if (!scene_->document.empty())
     write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
   for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
@@ -202,7 +202,7 @@ void Run::check_resumable() const {
 /// number of recorded states; on return, the number of these that an uninterrupted run would record.
 void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
   // With error control, the last step may have been shortened by the end of the run. If the new end is later,
-  // that step is repeated.
+  // this step is removed and repeated.
   if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
       scene_->end > record_.end)
     --keep;
@@ -463,7 +463,7 @@ void Run::fail(const std::string& message) noexcept {
   try {
     record_.status = RunRecord::Status::failed;
     record_.message = message;
-    write_record();  // without the tables, whose writing may have failed
+    write_record();  // not save(), which flushes the recording: flushing may be what failed
   } catch (const std::exception&) {
     // The first failure is the one that is reported.
   }

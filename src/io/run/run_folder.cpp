@@ -54,8 +54,8 @@ class RunFolder::Lock {
                             (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
                             ")");
       }
-      // If the previous owner has just removed the file, this lock is on a file without a name. Then try
-      // again.
+      // If the previous owner has just removed the file, this lock is on a file without a name. In this case
+      // the loop tries again.
       struct stat locked {
       }, named{};
       if (::fstat(descriptor_, &locked) == 0 && ::stat(path_.c_str(), &named) == 0 &&

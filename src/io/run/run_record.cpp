@@ -177,7 +177,7 @@ void read_scene(const Json& scene, RunRecord& r) {
   r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
 }
 
-// Keys read with value() are absent in the records of older versions.
+// Keys that are read with value() may be absent in the records of older versions.
 void read_options(const Json& options, RunRecord& r) {
   options.at("end").get_to(r.end);
   options.at("asked_step").get_to(r.requested_step);

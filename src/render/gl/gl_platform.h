@@ -15,7 +15,7 @@ struct GlContext::Platform {
   virtual void* function(const char* name) const = 0;
 };
 
-// Each function opens a context. If that fails, it throws std::runtime_error with the reason.
+// Each function opens a context, or throws std::runtime_error with the reason why none opens.
 std::unique_ptr<GlContext::Platform> open_osmesa();
 std::unique_ptr<GlContext::Platform> open_egl_surfaceless();
 std::unique_ptr<GlContext::Platform> open_egl_software_device();

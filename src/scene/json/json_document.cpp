@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-/// Splits a pointer into its keys. Returns false if it is not a JSON pointer.
+/// Splits a JSON pointer into its keys. Returns false if the text is not a JSON pointer.
 bool split(std::string_view pointer, std::vector<std::string>* keys) {
   if (pointer.empty()) return true;
   if (pointer[0] != '/') return false;
@@ -32,14 +32,14 @@ bool split(std::string_view pointer, std::vector<std::string>* keys) {
   return true;
 }
 
-/// Converts a key of a pointer to an index. Returns false if it is not an index.
+/// Converts a key of a pointer to an array index. Returns false if the key is not an index.
 bool index_of(const std::string& key, std::size_t* index) {
   const bool leading_zero = key.size() > 1 && key[0] == '0';
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), *index);
   return !leading_zero && error == std::errc() && end == key.data() + key.size();
 }
 
-/// Returns the value of a key or index of `parent`, or null.
+/// Returns the value of a key of an object or of an index of an array, or null if `parent` has no such value.
 const JsonValue* child(const JsonValue& parent, const std::string& key) {
   if (parent.is_object()) return parent.find(key);
   std::size_t index = 0;
@@ -47,8 +47,8 @@ const JsonValue* child(const JsonValue& parent, const std::string& key) {
   return &parent.array()[index];
 }
 
-/// Extends `pointer` by the path from a value to the value with address `wanted`. Returns false if it is not
-/// found.
+/// Extends `pointer` by the path from a value to the value with address `wanted`. Returns false and leaves
+/// `pointer` unchanged if `from` does not contain this address.
 bool find_address(const JsonValue& from, const JsonValue* wanted, std::string* pointer) {
   if (&from == wanted) return true;
   const std::size_t length = pointer->size();
@@ -72,8 +72,8 @@ std::string counted(std::size_t n, const char* noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-/// Returns whether a text is clearly not JSON. It is then a string without quotes, for example the value of
-/// --set /name=arm or of --set /force=2*t.
+/// Returns whether the value of an override is a string without quotes instead of JSON, for example in
+/// --set /name=arm or --set /force=2*t.
 bool is_bare_text(std::string_view text) {
   if (text.empty() || text == "true" || text == "false" || text == "null") return false;
   if (std::string_view("{[\"").find(text[0]) != std::string_view::npos) return false;

@@ -71,7 +71,7 @@ class Explainer {
     return fault(at, "JSON has no comments; write one as a key: \"//\": \"text\" (it may repeat)");
   }
 
-  /// Returns the token at a place, quoted and shortened.
+  /// Returns the token at an offset in quotes, cut after 30 bytes, or the words "the end of the file".
   std::string found(std::size_t at) const {
     if (ended(at)) return "the end of the file";
     std::size_t end = look(at) == '"' ? string_end(text_, at) : word_end(text_, at);
@@ -210,7 +210,7 @@ class Explainer {
     return fault(quote, "the text that begins here is not closed; expected '\"'");
   }
 
-  /// Returns the length of the escape at `at` in bytes, or 0 if it is not a valid escape.
+  /// Returns the length in bytes of the escape sequence at `at`, or 0 if the sequence is not valid.
   std::size_t escape_length(std::size_t at) const {
     const char c = look(at + 1);
     if (c != 'u')

@@ -10,12 +10,12 @@ namespace pliant::json {
 
 /// A fault of the text.
 struct Fault {
-  std::size_t offset;  ///< byte offset in the text
-  std::string pointer;
+  std::size_t offset;   ///< byte offset in the text
+  std::string pointer;  ///< JSON pointer of the value, or empty for a fault of syntax
   std::string message;
 };
 
-/// The last item that was read; it determines what may follow.
+/// The last item that the parser read; it determines which tokens may follow.
 enum class After { kNothing, kObjectStart, kKey, kMember, kArrayStart, kElement, kDocument };
 
 /// The state of the parser when it failed.
@@ -31,8 +31,8 @@ struct Progress {
 /// Returns the fault at which the parser stopped. Its JSON Pointer is empty.
 Fault explain(const Progress& progress);
 
-/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16).
-/// If so, stores the fault in *fault.
+/// Returns whether a text is empty or begins like another format (for example gzip, PNG, XML or UTF-16). If
+/// so, stores the fault in *fault.
 bool is_foreign(std::string_view text, Fault* fault);
 
 }  // namespace pliant::json

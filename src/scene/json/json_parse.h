@@ -1,6 +1,5 @@
-// From text to values, with the event parser of nlohmann-json. The events contain no places. But the parser
-// reports tokens in the order of the text, so that a cursor that moves from token to token finds the place of
-// each token.
+// Parsing of JSON text with the event (SAX) parser of nlohmann-json. The events contain no offsets, but they
+// come in the order of the text. A cursor that moves from token to token gives the offset of each token.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +20,8 @@ struct ParseOptions {
   std::function<void(const Fault&)> report;       ///< receives faults that do not end the parsing
 };
 
-/// Returns the value of a text. Throws Fault after a fault that ends the parsing: of syntax, or an exceeded
-/// limit.
+/// Returns the value of a JSON text. Throws Fault if the text is not JSON, or if it exceeds the limit of
+/// nesting or of the number of values.
 JsonValue parse(std::string_view text, const ParseOptions& options);
 
 }  // namespace pliant::json

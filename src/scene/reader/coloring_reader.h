@@ -15,7 +15,8 @@ namespace pliant {
 
 schema::Record coloring_record();
 
-/// Reads the coloring of a scene. coloring: a complete object of coloring_record(). parts: the parts by name.
+/// Returns the colouring of a scene. coloring: a complete object of coloring_record(). parts: the parts by
+/// name. Unknown part names are reported.
 Coloring read_coloring(const Reader& coloring, const std::map<std::string, NamedPart>& parts,
                        SceneFaults& faults);
 

@@ -42,8 +42,8 @@ Stabilization read_stabilization(const Reader& r, SceneFaults& faults) {
 
 namespace {
 
-/// Returns whether a joint between two ends constrains no motion, and reports the fault: both ends are
-/// immobile, they are one point, or they are on one rigid part.
+/// Returns whether a joint constrains no motion: both ends are immobile, are one point, or are on one rigid
+/// part. If so, reports the fault.
 bool constrains_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
   auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
   if (!moves(from) && !moves(to)) {
@@ -62,8 +62,8 @@ bool constrains_nothing(const Reader& r, const Point& from, const Point& to, Sce
   return true;
 }
 
-/// Returns whether the prescribed path of an end has a jump in position while the joint acts, and reports the
-/// fault.
+/// Returns whether the prescribed path of an end has a jump in position while the joint acts. If so, reports
+/// the fault.
 bool jumps(const Reader& r, const char* key, const Point& end, const PointReader& points,
            SceneFaults& faults) {
   const double on = r.given("on") ? r.number("on") : 0;
@@ -76,7 +76,7 @@ bool jumps(const Reader& r, const char* key, const Point& end, const PointReader
   return true;
 }
 
-/// Reads the keys that the type of a joint uses. Returns false if there are faults.
+/// Reads the keys that the type of a joint uses into `setting`. Returns false if there are faults.
 bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneFaults& faults) {
   const std::size_t before = faults.errors();
   if (keys.has(JointKey::length)) {
@@ -108,7 +108,7 @@ void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
   JointSetting setting{*from, *to};
   if (!read_setting(r, info->keys, setting, faults)) return;
   std::string name = name_of(r, info->name, body.joints().size());
-  while (body.has_joint(name)) name += "'";  // the scene may have given a generated name to another joint
+  while (body.has_joint(name)) name += "'";  // another joint of the scene may have the generated name
   try {
     Joint& joint = body.join(info->make(std::move(name), setting));
     if (r.given("off"))

@@ -16,7 +16,7 @@ struct Dent {
   double share(const Vec3<double>& X) const { return std::exp(-((X - at) / radius).squaredNorm()); }
 };
 
-/// Reads the basis and the keys that belong to it.
+/// Reads the basis of a local deformation and the keys of this basis into `settings`.
 void read_basis(const Reader& local, SceneFaults& faults, const Part& part, LocalSettings& settings) {
   using Basis = LocalSettings::Basis;
   const std::string name = local.text("basis");

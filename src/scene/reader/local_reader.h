@@ -8,8 +8,9 @@
 
 namespace pliant {
 
-/// Reads an object of local_record() and sets the local deformation of the part. Faults are reported, and the
-/// part is then left unchanged. make_factor: see LocalSettings.
+/// Reads an object of local_record() and sets the local deformation of the part. If there are faults, they
+/// are reported and the part does not change. make_factor: makes the sparse factorisation for modes of a
+/// mesh.
 void read_local(const Reader& local, const MakeSparseFactor& make_factor, SceneFaults& faults, Part& part);
 
 }  // namespace pliant

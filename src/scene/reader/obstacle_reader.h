@@ -22,8 +22,8 @@ struct MeshFolder {
 /// Returns the record of an obstacle. orientation, color: types of the keys of these names.
 schema::Record obstacle_record(const schema::Type& orientation, const schema::Type& color);
 
-/// Reads an obstacle and adds it to the scene; faults are reported. taken: names of parts, planes and other
-/// obstacles.
+/// Reads an obstacle and adds the obstacle to the scene. If it has faults, they are reported instead. taken:
+/// names of parts, planes and other obstacles.
 void read_obstacle(const Reader& r, const std::vector<std::string>& taken, const MeshFolder& folder,
                    SceneFaults& faults, Scene& scene);
 

@@ -77,7 +77,8 @@ std::unique_ptr<Part> PartReader::read() {
   return std::move(part_);
 }
 
-/// Returns a number of the part, or else of its material, or else the default.
+/// Returns the number under a key of the part. If the part lacks the key, returns the number of its material,
+/// or else the default.
 double PartReader::property(const char* key) const {
   if (!r_.given(key) && r_.given("material")) {
     const auto material = materials_.find(r_.text("material"));
@@ -86,7 +87,7 @@ double PartReader::property(const char* key) const {
   return r_.number(key);
 }
 
-/// Reads the elasticity of the part, or else of its material.
+/// Reads the elasticity of the part, or of its material if the part has none.
 void PartReader::read_elasticity() {
   const Reader* from = r_.given("elasticity") ? &r_ : nullptr;
   if (from == nullptr && r_.given("material")) {

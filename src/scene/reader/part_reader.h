@@ -16,7 +16,8 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: the materials of the scene by name. make_factor: see LocalSettings. end: end of the run, s.
+  /// materials: the materials of the scene by name. make_factor: makes the sparse factorisation for modes of
+  /// a mesh. end: end of the run, s.
   PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
              const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
       : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
@@ -36,7 +37,7 @@ class PartReader {
   /// Returns whether the matrix [[...], ...] is symmetric; differing numbers are reported.
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
-  /// Returns the value of "fixed" or "motion" if the motion of the part is prescribed, or null if it is free.
+  /// Returns the value of "fixed" or "motion", or null if the part is neither fixed nor moved as prescribed.
   const JsonValue* fixed_or_motion() const;
   void read_motion(const Reader& r);
   void check_rigid_keys();

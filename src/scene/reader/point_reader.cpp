@@ -11,14 +11,15 @@ namespace pliant {
 
 namespace {
 
-/// Tolerance of a latitude, rad: users write rounded angles, such as 1.5708 for a pole.
+/// Tolerance of a latitude, rad: users write rounded angles, for example 1.5708 for a pole.
 constexpr double kAngleRounding = 1e-4;
 
-/// Largest w - 1 of a position outside the part that is still projected to the surface.
+/// A position outside the part is projected to the surface if w - 1 is below this number. w is the radial
+/// coordinate, 1 on the surface.
 constexpr double kFarOutside = 1;
 
 /// Returns the outermost intersection (m, body frame) of the rest shape with a ray from the origin of the
-/// frame, or nothing if the ray does not meet the shape.
+/// frame, or nothing if there is no intersection.
 std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
   const Vec3<double> ray = direction.stableNormalized() * part.size();
   auto outside = [&](double t) {
@@ -37,8 +38,8 @@ std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>
     double in = spacing * i, out = spacing * (i + 1);
     const auto at = static_cast<std::size_t>(i);
     if (!(sample[at] < 0)) {
-      // Between samples that are all outside, a body thinner than the spacing can only be near a minimum of
-      // outside(). The golden section search looks for it.
+      // Between samples that are all outside, a part thinner than the spacing can only be near a minimum of
+      // outside(). A golden section search finds this minimum.
       if (i == 0 || sample[at] > sample[at - 1] || sample[at] > sample[at + 1]) continue;
       constexpr double golden = 0.6180339887498949;
       double low = spacing * (i - 1), high = out;

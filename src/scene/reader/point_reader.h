@@ -18,7 +18,7 @@ namespace pliant {
 struct NamedPart {
   const JsonValue* name = nullptr;  ///< the value of its key "name"
   Part* part = nullptr;             ///< null if the part could not be made
-  bool prepared = false;            ///< whether points on it can be resolved
+  bool prepared = false;            ///< whether points on the part can be resolved
 };
 
 class PointReader {
@@ -33,7 +33,8 @@ class PointReader {
   std::optional<Point> on_part(const Reader& r) const;
   /// Returns the point {"part", "at"} or {"world"}, or nothing if it cannot be resolved; faults are reported.
   std::optional<Point> anywhere(const Reader& r) const;
-  /// Returns the point under a key of a spring or joint, read by anywhere().
+  /// Returns the point under a key of a spring or joint, read by anywhere(), or nothing if the key is absent
+  /// or faulty.
   std::optional<Point> end(const Reader& r, const char* key) const;
   /// Returns the first time in (after, until] and within the run (s) at which the position of a moving point
   /// of the world jumps, or nothing. The path is searched in 256 intervals.
@@ -51,7 +52,8 @@ class PointReader {
 /// Returns whether two material points are identical.
 bool same_point(const Material<double>& a, const Material<double>& b);
 
-/// Returns the position of a point at time 0, m, world. Local deformation is ignored.
+/// Returns the position of a point at time 0 (m, world) with the initial parameters of its part. Local
+/// deformation is ignored.
 Vec3<double> position_at_start(const Point& point);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Reading functions of time. Each function is evaluated at many times of the run, and a value that is not
-// finite is reported at its place.
+// Reading functions of time. Each function is evaluated at 257 times of the run. Values that are not finite
+// are reported.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,8 @@ class TimeReader {
   /// Returns the function that a validated value describes. Reports a fault and returns nothing if the
   /// function is not finite at one of 257 times from 0 to the end.
   std::optional<TimeFunction> function(const JsonValue& value, Needs needs) const;
-  /// Returns the three functions under a key, or nothing if one is faulty; each fault is reported.
+  /// Returns the three functions under a key, or nothing if the key is absent or a function is faulty. Each
+  /// fault is reported.
   std::optional<TimeVector> vector(const Reader& r, const char* key, Needs needs) const;
 
  private:

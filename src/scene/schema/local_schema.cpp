@@ -13,7 +13,8 @@ using namespace schema;
 
 namespace {
 
-/// Returns the record of a law with the numbers that it needs.
+/// Returns the record of an elastic law; its fields are the material numbers of the law. meaning: description
+/// of the law.
 Record law_record(const LocalLawInfo& info, const char* meaning) {
   Record law{info.name, std::string(info.shell ? "For a shell: " : "For a solid: ") + meaning, {}};
   for (const LocalLawInfo::Number& n : info.numbers) {

@@ -78,7 +78,8 @@ Type orientation() {
       .expecting("{\"quaternion\": [w, x, y, z]} or {\"axis\": [x, y, z], \"angle\": radians}");
 }
 
-/// Returns the record of a part or a material: the fields `more`, then the fields that both have.
+/// Returns the record of a part or a material: the fields `more`, then the fields that parts and materials
+/// share.
 Record damping_fields(std::string record_name, std::string description, std::vector<Field> more) {
   std::vector<Field> fields = std::move(more);
   fields.push_back(optional("density", number(above(0), "kg/m^3"),

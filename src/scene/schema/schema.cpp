@@ -11,7 +11,8 @@ namespace pliant::schema {
 
 namespace {
 
-/// Parses the JSON text of an example or a default value in the declaration of a key.
+/// Returns the value of an example or a default value in the declaration of a key. Throws std::logic_error if
+/// `text` is not JSON.
 JsonValue parse_declared(const std::string& key, const std::string& text) {
   json::ParseOptions options;
   options.place = [](std::size_t offset) { return "character " + std::to_string(offset + 1); };
@@ -77,8 +78,8 @@ bool accepts_objects(const Type& type) {
   return type.kind == Kind::kMap || type.kind == Kind::kRecord || type.kind == Kind::kTagged;
 }
 
-/// Returns a measure of how well a type fits the keys of an object. A required key outweighs all optional
-/// ones.
+/// Returns how well a type fits the keys of an object: 1000 for each key that the type requires (or its tag),
+/// 1 for each optional key. For several alternatives, returns the best fit.
 int weight(const Type& type, const JsonValue& object) {
   if (type.kind == Type::Kind::kTagged) return object.find(type.tag) != nullptr ? 1000 : 0;
   if (type.kind == Type::Kind::kRecord) {

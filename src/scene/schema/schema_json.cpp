@@ -12,7 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns the unit of the numbers in a value of this type, or an empty text if it contains none.
+/// Returns the unit of the first number with a unit in a type, or an empty text if there is none. Fields of
+/// records do not count.
 std::string unit_of(const Type& type) {
   if (type.kind == Type::Kind::kNumber) return type.unit;
   for (const Type& inner : type.inner) {
