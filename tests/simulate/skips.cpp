@@ -260,7 +260,7 @@ TEST_CASE("a step with a parameter without inertia allocates no heap memory", "[
     Simulation simulation(body, method);
     INFO(method);
     check_heap(simulation, 1e-3);
-    CHECK(simulation.parameters_without_inertia().count("part.bend.direction") == 1);
+    CHECK(simulation.velocities_without_inertia().count("part.bend.direction") == 1);
   }
 }
 

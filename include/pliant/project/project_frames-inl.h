@@ -49,8 +49,7 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H0 by at most sqrt(2) |sum m d s^T|, and by terms of the unmet conditions, which are
-  // small.
+  // K differs from H0 by at most sqrt(2) |sum m d s^T|, and by terms of the residuals, which are small.
   const bool regular = violation.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(violation.W_d) && small(state.h * violation.W_d_dot);
 }

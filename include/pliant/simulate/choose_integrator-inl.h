@@ -24,7 +24,7 @@ namespace integrator_choice {
 /// counted, because steps grow and transients of the start decay there.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
 /// Longest trial, s.
-inline constexpr double kLongestTrial = 1e3;
+inline constexpr double kMaxTrialTime = 1e3;
 /// Cost of a factorisation of a dense matrix for n velocities: kFactorisation n^2 evaluations. An evaluation
 /// takes about 70 n ns and a factorisation about n^3 / 3 ns (bench/step_bench, on one core).
 inline constexpr double kFactorisation = 0.005;
@@ -67,7 +67,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
   state.h = first_step(start_of_trial, scale, order);
   const StepGrowth growth = growth_of(method, dynamics.model());
   const int max_steps = growth.rarely ? kStepsWithFactors : kSteps;
-  const double end = start.time() + kLongestTrial;
+  const double end = start.time() + kMaxTrialTime;
   double timed_from = start.time();
   int first_timed = 0, steps = 0;
   for (; steps < max_steps && state.time() < end; ++steps) {

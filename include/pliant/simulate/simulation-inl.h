@@ -424,7 +424,7 @@ PLIANT_INLINE void Simulation::record_without_inertia() {
   }
 }
 
-PLIANT_INLINE std::set<std::string> Simulation::parameters_without_inertia() const {
+PLIANT_INLINE std::set<std::string> Simulation::velocities_without_inertia() const {
   std::set<std::string> names;
   for (const PartModel& m : model_.parts())
     for (int k = 0; m.q0 >= 0 && k < 6 + m.n_s; ++k)

@@ -80,7 +80,7 @@ class Simulation {
   Counters counters() const;
   /// Returns the names of the parameters ("part.parameter") and of the velocities of frames ("part.omega.x")
   /// that had no inertia in at least one step and were fixed in that step.
-  std::set<std::string> parameters_without_inertia() const;
+  std::set<std::string> velocities_without_inertia() const;
 
  private:
   template <class Advance>

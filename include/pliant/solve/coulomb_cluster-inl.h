@@ -17,7 +17,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerances of the sweeps. The largest of the two and of `enough` (CoulombSystem::solve) is used.
+/// Tolerances of the sweeps. The largest of the two and of `tolerance` (CoulombSystem::solve) is used.
 /// kSweepExact is relative to the largest contact velocity without impulses. kSweepUlps is in units of the
 /// rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
@@ -68,13 +68,13 @@ inline void extrapolate_sweeps(const SweepGram& G, int filled, CoulombScratch::S
 
 }  // namespace detail
 
-PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
+PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double tolerance,
                                              CoulombScratch& scratch)
     : system_(system),
       number_(number),
       contacts_(system.order_.data() + system.clusters_[at(number)]),
       size_(system.clusters_[at(number) + 1] - system.clusters_[at(number)]),
-      tolerance_(enough),
+      tolerance_(tolerance),
       scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s)
@@ -102,12 +102,12 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
                            scale_);
 }
 
-/// Sets the compliance of all contacts. softness: as a fraction of the diagonal of W.
-PLIANT_INLINE void CoulombCluster::set_compliance(double softness) {
-  compliance_ = softness;
+/// Sets the compliance of all contacts, as a fraction of the diagonal of W.
+PLIANT_INLINE void CoulombCluster::set_compliance(double compliance) {
+  compliance_ = compliance;
   for (int i = 0; i < size_; ++i) {
     Mat3<double> W = contact(i).W;
-    W.diagonal() *= 1 + softness;
+    W.diagonal() *= 1 + compliance;
     contact(i).law = CoulombLaw(W, contact(i).rows == 1 ? 0 : contact(i).mu);
   }
 }

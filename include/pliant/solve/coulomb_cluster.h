@@ -62,9 +62,9 @@ struct CoulombScratch {
 /// One cluster of a contact problem.
 class CoulombCluster {
  public:
-  /// number: index of the cluster. The velocities of the system must include the present impulses. enough:
+  /// number: index of the cluster. The velocities of the system must include the present impulses. tolerance:
   /// see CoulombSystem::solve.
-  CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
+  CoulombCluster(CoulombSystem& system, int number, double tolerance, CoulombScratch& scratch);
   /// Finds the impulses and stores them in the system. Updates the largest residual in result and adds the
   /// number of sweeps; adds a fallback if the search was repeated with compliant contacts.
   void solve(CoulombResult& result);
@@ -77,7 +77,7 @@ class CoulombCluster {
   const Vec3<double>& p(int i) const { return system_.p_[at(contacts_[i])]; }
   bool is_fixed(int i) const { return contact(i).first_push == contact(i).last_push; }
   void set_scale();
-  void set_compliance(double softness);
+  void set_compliance(double compliance);
   Vec3<double> velocity(int i) const;
   Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
   void add_impulse(int i, const Vec3<double>& dp);

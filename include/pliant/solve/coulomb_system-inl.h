@@ -195,7 +195,7 @@ PLIANT_INLINE void CoulombSystem::find_clusters() {
   clusters_.push_back(static_cast<int>(order_.size()));
 }
 
-PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
+PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, double tolerance) {
   if (!complete_) complete();
   CoulombResult result;
   x0_.resize(static_cast<Eigen::Index>(used_.size()));
@@ -207,7 +207,7 @@ PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, double enough)
     if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x)[0]);
   }
   for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)
-    CoulombCluster(*this, i, enough, *scratch_).solve(result);
+    CoulombCluster(*this, i, tolerance, *scratch_).solve(result);
   // The search accumulates rounding errors in the velocities. Compute them from the final impulses.
   for (int k = 0; k < size(); ++k) add_change(k, 1, x);
   return result;

@@ -22,7 +22,7 @@ struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
   /// Number of clusters whose search was repeated with compliant contacts. A search is repeated if it leaves
-  /// a residual above `enough` (see CoulombSystem::solve) and above 1e-6 of the largest contact velocity
+  /// a residual above `tolerance` (see CoulombSystem::solve) and above 1e-6 of the largest contact velocity
   /// without impulses. The fraction is 1e-2 for clusters with more than 100 contacts or with point masses,
   /// because their searches converge more slowly.
   int fallbacks = 0;
@@ -90,9 +90,9 @@ class CoulombSystem {
   /// if the contact has no side.
   bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
   /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
-  /// output. enough: a velocity; smaller violations of the law are accepted. No contact or mover can be added
-  /// afterwards.
-  CoulombResult solve(VecX<double>& x, double enough = 0);
+  /// output. tolerance: a velocity; smaller violations of the law are accepted. No contact or mover can be
+  /// added afterwards.
+  CoulombResult solve(VecX<double>& x, double tolerance = 0);
 
  private:
   friend class CoulombCluster;

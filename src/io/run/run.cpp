@@ -347,10 +347,10 @@ void Run::write_record() {
   const std::vector<double>& rested = simulation_->state().at_rest;
   record_.asleep =
       static_cast<int>(std::count_if(rested.begin(), rested.end(), [](double time) { return time < 0; }));
-  for (const std::string& name : simulation_->parameters_without_inertia())
-    if (std::find(record_.parameters_without_inertia.begin(), record_.parameters_without_inertia.end(),
-                  name) == record_.parameters_without_inertia.end())
-      record_.parameters_without_inertia.push_back(name);
+  for (const std::string& name : simulation_->velocities_without_inertia())
+    if (std::find(record_.velocities_without_inertia.begin(), record_.velocities_without_inertia.end(),
+                  name) == record_.velocities_without_inertia.end())
+      record_.velocities_without_inertia.push_back(name);
   write_run_record(*folder_ / kRunFile, record_);
   saved_ = Clock::now();
 }

@@ -152,7 +152,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["work"] = work_of(r);
   json["monitors"] = monitors_of(r);
   if (r.error) json["error_estimate"] = error_estimate_of(*r.error);
-  json["held"] = r.parameters_without_inertia;
+  json["held"] = r.velocities_without_inertia;
   json["skipped"] = r.skipped;
   json["notes"] = r.notes;
   json["files"] = r.files;
@@ -247,7 +247,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     r.seconds = read_pairs<double>(json.at("wall_seconds"));
     read_work(json.at("work"), r);
     read_monitors(json.at("monitors"), r);
-    json.at("held").get_to(r.parameters_without_inertia);
+    json.at("held").get_to(r.velocities_without_inertia);
     json.at("skipped").get_to(r.skipped);
     json.at("notes").get_to(r.notes);
     json.at("files").get_to(r.files);

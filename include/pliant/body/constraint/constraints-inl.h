@@ -179,25 +179,25 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls place(i) for the parts i of an island in their order, each part before the first joint on it. Does
-/// nothing if `place` is empty.
+/// Calls evaluate(i) for the parts i of an island in their order, each part before the first joint on it.
+/// Does nothing if `evaluate` is empty.
 class PartsInTurn {
  public:
-  PartsInTurn(const Island& island, const EvaluatePart& place) : island_(island), place_(place) {
-    if (!place) next_ = island.parts.size();
+  PartsInTurn(const Island& island, const EvaluatePart& evaluate) : island_(island), evaluate_(evaluate) {
+    if (!evaluate) next_ = island.parts.size();
   }
-  void place_for(const JointModel& joint) {
-    for (const JointSide& side : joint.sides) place_to(at(side.place) + 1);
+  void evaluate_for(const JointModel& joint) {
+    for (const JointSide& side : joint.sides) evaluate_to(at(side.place) + 1);
   }
-  void evaluate_remaining() { place_to(island_.parts.size()); }
+  void evaluate_remaining() { evaluate_to(island_.parts.size()); }
 
  private:
-  void place_to(std::size_t end) {
-    for (; next_ < end; ++next_) place_(island_.parts[next_]);
+  void evaluate_to(std::size_t end) {
+    for (; next_ < end; ++next_) evaluate_(island_.parts[next_]);
   }
 
   const Island& island_;
-  const EvaluatePart& place_;
+  const EvaluatePart& evaluate_;
   std::size_t next_ = 0;
 };
 
@@ -206,10 +206,10 @@ class PartsInTurn {
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                     const EvaluatePart& place) {
-  detail::PartsInTurn in_turn(island, place);
+                     const EvaluatePart& evaluate) {
+  detail::PartsInTurn in_turn(island, evaluate);
   for (const int j : island.joints) {
-    in_turn.place_for(model.joints()[at(j)]);
+    in_turn.evaluate_for(model.joints()[at(j)]);
     detail::evaluate_joint(model, j, t, parts, work);
   }
   in_turn.evaluate_remaining();
@@ -243,11 +243,11 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                                const EvaluatePart& place) {
-  detail::PartsInTurn in_turn(island, place);
+                                const EvaluatePart& evaluate) {
+  detail::PartsInTurn in_turn(island, evaluate);
   if (island.augmented) in_turn.evaluate_remaining();  // the augmented matrix needs the masses of all parts
   detail::factor_after(model, island, parts, work, [&](int j) {
-    in_turn.place_for(model.joints()[at(j)]);
+    in_turn.evaluate_for(model.joints()[at(j)]);
     detail::evaluate_joint(model, j, t, parts, work);
   });
   in_turn.evaluate_remaining();

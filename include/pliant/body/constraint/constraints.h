@@ -107,13 +107,13 @@ struct ConstraintWorkspace {
 /// A function that evaluates the part with a given number, as far as the joints on the part need it.
 using EvaluatePart = std::function<void(int)>;
 
-/// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls place(i), if given, for
+/// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls evaluate(i), if given, for
 /// the parts of the island in turn, each part before the first joint on it is evaluated. Part and joint are
 /// then in the cache together.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                     const EvaluatePart& place = {});
+                     const EvaluatePart& evaluate = {});
 
 /// Computes M^-1 C_q^T and the factors of W_c of an island. Rows of joints that do not act are left out.
 template <class S>
@@ -124,7 +124,7 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
-                                const EvaluatePart& place = {});
+                                const EvaluatePart& evaluate = {});
 
 /// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between two points of one part,
 /// returns the sum of the entries that each side alone would have. If the motion of the part cannot move one

@@ -211,12 +211,12 @@ inline std::vector<OneSidedRow> limits_at_rest(const Evaluation<double>& e, cons
 }
 
 /// Stage 4 of an island: C, C_dot, bias and C_q, then M^-1 C_q^T and W_c, then lambda and the accelerations
-/// of its parts. place(i): evaluates part i; used if the parts are evaluated together with their joints.
+/// of its parts. evaluate(i): evaluates part i; used if the parts are evaluated together with their joints.
 template <class S>
-void evaluate_island(const Evaluation<S>& e, const Island& island, const EvaluatePart& place) {
+void evaluate_island(const Evaluation<S>& e, const Island& island, const EvaluatePart& evaluate) {
   if (e.uses_rigid(island) || e.skips(island)) return;
   evaluate_and_factor_joints<S>(e.model(), island, e.t, e.work.parts, e.work.joints,
-                                e.with_joints(island) ? place : EvaluatePart());
+                                e.with_joints(island) ? evaluate : EvaluatePart());
   if constexpr (std::is_same_v<S, double>)
     solve_joints(e.model(), island, limits_at_rest(e, island), e.work);
   else

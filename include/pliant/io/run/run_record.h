@@ -66,7 +66,7 @@ struct RunRecord {
   int asleep = 0;                      ///< number of sleeping parts at the last state
   std::optional<ErrorEstimate> error;  ///< error estimate, if requested
   std::vector<std::string>
-      parameters_without_inertia;    ///< parameters without inertia, which were kept constant
+      velocities_without_inertia;    ///< parameters and frame velocities without inertia, kept constant
   std::vector<std::string> skipped;  ///< computations that the scene did not need
   std::vector<std::string> notes;    ///< warnings and automatic choices
   /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
