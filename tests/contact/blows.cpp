@@ -1,6 +1,7 @@
-// Impacts of parts with dynamic global parameters. Velocities and energy after an impact obey the inelastic
-// law: the relative velocity at the contact point becomes zero (its normal component only, if the contact
-// slides). The parameters receive a share of the energy, and pairs conserve their momenta.
+// Impacts of parts with dynamic global parameters, and of pairs that include rigid parts and balloons.
+// Velocities and energy after an impact obey the inelastic law: the relative velocity at the contact point
+// becomes zero. If the contact slides, only its normal component becomes zero. The parameters receive a share
+// of the energy, and pairs conserve their momenta.
 #include "catch.h"
 
 #include <cmath>
@@ -32,11 +33,14 @@ struct Impact {
   State before, after;
   Ledger ledger_before, ledger_after;
   ContactRecord record;
-  MatX<double> M;   ///< 1/2 v^T M v is the kinetic energy at the impact
-  MatX<double> Jc;  ///< Jc v is the relative velocity at the contact, along the normal and two tangents
+  MatX<double> M;  ///< 1/2 v^T M v is the kinetic energy at the impact
+  /// Jc v is the velocity of side a relative to side b at the contact, along the normal and two tangents,
+  /// m/s.
+  MatX<double> Jc;
 };
 
-/// Computes M of a state from the kinetic energies of unit velocities and of sums of two unit velocities.
+/// Returns the mass matrix M at the state of a simulation, from the kinetic energies of unit velocities and
+/// of sums of two unit velocities.
 MatX<double> mass_matrix(const Simulation& simulation) {
   const Dynamics& dynamics = simulation.dynamics();
   State state = simulation.state();
@@ -54,8 +58,9 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// Adds `sign` times a derivative to L: the derivative, with respect to v, of the velocity of one side at the
-/// contact point (world frame). Its columns are (I, -R [p]x, R J). A side without coordinates adds nothing.
+/// Adds sign * dx_dot/dv to L. x_dot: velocity of the contact point on one side, m/s, world. L: 3 rows, one
+/// column for each velocity of the model. The columns of the part are (I, -R [p]x, R J), with the point p in
+/// the frame of the part and J = dp/dq_s. A side without coordinates adds nothing.
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;
@@ -162,8 +167,8 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
                            Y = impact.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
         const VecX<double> u = Jc * impact.before.v, u_after = Jc * impact.after.v;
         REQUIRE(u[0] < -1);
-        // The impulse that stops the relative motion. For the contact that slides with friction, it is
-        // replaced by the impulse that acted.
+        // p is the impulse that stops the relative motion. With mu = 0.03 the contact slides, and p is the
+        // recorded impulse instead.
         VecX<double> p = -Nc.ldlt().solve(u);
         if (mu == 0.03) {
           const Contact& contact = impact.record.contacts[0];
@@ -181,7 +186,8 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
         loss_error.note(
             std::abs(impact.ledger_after.work.sum() - impact.ledger_before.work.sum() + measured_loss) /
             loss);
-        // The parameter rates receive a share of the energy.
+        // The impact changes the three parameter rates of part a. The kinetic energy of this change exceeds a
+        // tenth of the lost energy.
         VecX<double> rates = VecX<double>::Zero(impact.after.v.size());
         rates.segment<3>(6) = change.segment<3>(6);
         CHECK(0.5 * rates.dot(impact.M * rates) > 0.1 * loss);
@@ -192,9 +198,10 @@ TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law"
 }
 
 TEST_CASE("a ball with a dynamic height rebounds from an inelastic impact by the closed form", "[contact]") {
-  // The impact stops the pole, whose velocity is u = c_dot - a3_dot. An impulse p changes u by
-  // (1 / m + 1 / (m / 5)) p, so that a sixth of the energy is lost. Then c = a3 oscillates with the mass
-  // m + m / 5 for half a period, and the ball leaves with 5/6 of the speed.
+  // c: height of the centre; m: mass of the ball; m / 5: inertia of a3. The impact stops the lower pole,
+  // whose velocity is u = c_dot - a3_dot. An impulse p changes u by (1 / m + 1 / (m / 5)) p, so that a sixth
+  // of the energy is lost. Then c = a3 oscillates with the mass m + m / 5 for half a period, and the ball
+  // leaves with 5/6 of its initial speed.
   const double speed = 1, radius = 0.1, stiffness = 2000, height = 0.0203;
   for (const std::string method : {"semi_implicit_euler", "rk4", "implicit_midpoint", "esdirk",
                                    "linearly_implicit", "dormand_prince", "dop853"}) {
@@ -227,7 +234,8 @@ TEST_CASE("a ball with a dynamic height rebounds from an inelastic impact by the
 
 namespace {
 
-/// Adds a smooth convex part of random size and density, rigid or with dynamic parameters.
+/// Adds a smooth part of random size and density. kind: index of the shape, 0 to 6. Kinds 0 to 3 are rigid;
+/// kinds 4 to 6 have dynamic parameters, and kind 6 also has a taper and a bend.
 Part& random_part(MultiBody& body, const std::string& name, int kind, Draws& draws) {
   const std::vector<std::string> shapes{"sphere",    "ellipsoid",      "superellipsoid", "capsule",
                                         "ellipsoid", "superellipsoid", "ellipsoid"};
@@ -248,7 +256,8 @@ Part& random_part(MultiBody& body, const std::string& name, int kind, Draws& dra
   return part;
 }
 
-/// Adds two parts of `random_part` that spin and collide off centre.
+/// Adds two parts of random_part() that spin and collide off centre. kind, other: their kinds. mu:
+/// coefficient of friction.
 void random_pair(MultiBody& body, int kind, int other, double mu, Draws& draws) {
   body.contact.friction = mu;
   const Vec3<double> aside = draws.vector(0.05);

@@ -34,7 +34,7 @@ Eigen::Quaterniond tilted(double angle) {
 }
 constexpr double kG = 9.81;
 
-/// A method and the tolerance of its error control; 0: fixed steps.
+/// A method and the tolerance of its error control. A tolerance of 0 means fixed steps.
 struct Method {
   const char* name;
   double tolerance;
@@ -49,7 +49,8 @@ TEST_CASE(
     "N49: a ball bounces at the times of a geometric series, and is at rest after the end of the series",
     "[contact]") {
   const double first = std::sqrt(2 / kG);
-  // Returns the largest error of the height of the ball, m.
+  // Returns the largest error of the height of the ball in a run to the time `until` (s), m. e: coefficient
+  // of restitution; h: step, s.
   auto error = [&](const Method& method, double e, double h, double until) {
     MultiBody body;
     body.contact.restitution = e;
@@ -79,7 +80,7 @@ TEST_CASE(
       // The run continues after the last of infinitely many bounces.
       CHECK(error(method, e, 2e-3, e < 1 ? first * (1 + e) / (1 - e) + 0.5 : 2.5) < 3e-10);
     }
-    // The flight between bounces is of first order with this method.
+    // With this method the flight between bounces has an error of first order.
     const Method euler{"semi_implicit_euler", 0};
     const double coarse = error(euler, e, 2e-3, 2.5), fine = error(euler, e, 1e-3, 2.5);
     CAPTURE(e, coarse, fine);
@@ -204,7 +205,7 @@ TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
     test::run(simulation, 0.8, static_cast<int>(std::lround(0.8 / h)));
     CHECK(simulation.state().v.norm() < 1e-12);
     errors.push_back(std::abs(simulation.state().q.head<2>().norm() - 4.25 / (2 * 0.4 * kG)));
-    CHECK(errors.back() < 0.4 * kG * h * h);  // friction is of first order in the step in which it stops
+    CHECK(errors.back() < 0.4 * kG * h * h);  // the error of the step in which the block stops
   }
 }
 
@@ -264,7 +265,7 @@ TEST_CASE("parts that collide conserve their momenta, and the energy loss follow
     CHECK(before.energy() - after.energy() == Approx(loss).epsilon(1e-9).margin(1e-9));
     CHECK(std::abs(after.balance) < 1e-9);
   }
-  // Random shapes with friction: P and L of the pair are conserved.
+  // A box and an ellipsoid with friction and random spins: the linear momentum is conserved.
   for (int trial = 0; trial < 3; ++trial) {
     const Vec3<double> spin_a = draws.vector(3), spin_b = draws.vector(3);
     std::vector<double> balance;
@@ -422,7 +423,7 @@ TEST_CASE("in free flight contact costs no evaluations, and a resumed run gives 
   Simulation one(body, "rk4"), other(free, "rk4");
   test::run(one, 0.2, 50);
   test::run(other, 0.2, 50);
-  CHECK(one.state().q == other.state().q);  // in flight a step is the step of the method alone
+  CHECK(one.state().q == other.state().q);  // in flight, contact does not change a step
   CHECK(one.step_counters().evaluations == other.step_counters().evaluations);
   test::run(one, 0.6, 60);
   const State copy = one.state();
@@ -545,7 +546,7 @@ TEST_CASE("the impulse on a joint in an impact equals the change of momentum of 
                            work);
   const Vec3<double> impulse = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
   const Vec3<double> gain = right.total_mass() * (state.v.segment<3>(6) - Vec3<double>(0, 0, -2));
-  // In the rest of the step the joint changes the direction of the motion.
+  // In the rest of the step after the impact, the joint changes the direction of the motion.
   CHECK((impulse - gain).norm() < 0.02 * gain.norm());
   CHECK(impulse[2] > right.total_mass());
   CHECK(record.impulses[0][2] ==

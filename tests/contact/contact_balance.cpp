@@ -1,6 +1,6 @@
 // Energy and momentum in contact: inelastic, frictional motion gains no energy beyond the error of a step,
 // and a rod in Painleve's paradox jams. An impact on a springboard follows the closed form. A joint that
-// pulls a part through a floor is reported.
+// pulls a part through a floor stays closed, and the contact residual is reported.
 #include "catch.h"
 
 #include <cmath>
@@ -52,7 +52,7 @@ void chain(MultiBody& body) {
   floor(body);
 }
 
-/// A part with two dynamic sizes and a dynamic taper.
+/// Adds a part with two dynamic semi-axes and a dynamic taper.
 void tumbling_solid(MultiBody& body) {
   Part& part = test::add(body, "solid", "superellipsoid", {"taper"}, 1000);
   part.rest({{"a1", 0.1}, {"a2", 0.15}, {"a3", 0.2}, {"taper.tx", 0.3}});
@@ -61,7 +61,7 @@ void tumbling_solid(MultiBody& body) {
   part.velocity({1, 0.3, 0}, {3, -2, 5});
   floor(body);
 }
-/// Three parts with dynamic sizes.
+/// Adds three parts with dynamic semi-axes.
 void soft_pile(MultiBody& body) {
   for (int i = 0; i < 3; ++i)
     test::add(body, "part" + std::to_string(i), "ellipsoid", {}, 1000)
@@ -127,9 +127,10 @@ Gain gain(const Build& build, const std::string& method, double h, int steps,
     const Ledger before = full_step.ledger();
     full_step.step(h);
     const Ledger after = full_step.ledger();
-    // The error of a step is of second order: the error of n substeps is 1 / n of the error of the full step,
-    // to leading order. Four substeps are tried too, because an impact near the middle divides the full step
-    // into halves as well. More substeps are needed if a step contains several impacts.
+    // The error of a step is proportional to the square of its length. To leading order, n substeps therefore
+    // have 1 / n of the error of the full step. Four substeps are tried too, because an impact near the
+    // middle also divides the full step into halves, and two substeps then show no error. More substeps are
+    // needed if a step contains several impacts.
     double energy = 0, balanced = 0;
     for (const int n : substep_counts) {
       substeps.set_state(at);
@@ -186,8 +187,8 @@ TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error
       CAPTURE(scene.name, method);
       const Gain result = gain(scene.build, method, scene.h, scene.steps);
       const bool first_order = method == "semi_implicit_euler";
-      // The error of a step is estimated to leading order only: to some per cent for vibrations with a method
-      // of first order.
+      // The error of a step is estimated to leading order only. For vibrations with a method of first order,
+      // the estimate is accurate to a few per cent.
       CHECK(result.energy <= (first_order ? 1e-4 : 2e-7));
       CHECK(result.balance <= (first_order ? 1e-4 : 1e-6));
       CHECK(result.sum <= (first_order ? 1e-3 : 1e-5));
@@ -196,11 +197,11 @@ TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error
 }
 
 TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no energy", "[contact]") {
-  // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. If
-  // 3 mu sin cos > 1 + 3 cos^2, no motion with finite forces obeys Coulomb's law; if the rod also rotates
-  // away from the floor, more than one motion does. The solution is an impulse without a collision: it stops
-  // the tip, which slides with the speed v, at once. Its components along and normal to the floor are
-  // m v (1 + 3 cos^2) / 4 and m v 3 sin cos / 4.
+  // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. s =
+  // sin(angle), c = cos(angle), m: mass of the rod, v: speed of the tip. If 3 mu s c > 1 + 3 c^2, no motion
+  // with finite forces obeys Coulomb's law; if the rod also rotates away from the floor, more than one motion
+  // does. The solution is an impulse without a collision, which stops the tip at once. Its components along
+  // and normal to the floor are m v (1 + 3 c^2) / 4 and 3 m v s c / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})
@@ -258,8 +259,8 @@ TEST_CASE("N59: the impact of a ball on a springboard follows the closed form", 
     Simulation simulation(body, "rk4");
     const double m = ball.total_mass(), M = board.total_mass();
     const double inertia = M / 3 * (0.8 * 0.8 + 0.02 * 0.02);
-    // The impulse, at the distance x from the hinge, that separates ball and board with e times the approach
-    // speed.
+    // p is the impulse, at the distance x from the hinge, that separates ball and board with e times the
+    // approach speed.
     const double p = (1 + e) * speed / (1 / m + x * x / inertia);
     const ContactRecord& record = simulation.contact()->record();
     while (record.contacts.empty() && simulation.time() < 0.02) simulation.step(1e-3);
@@ -306,7 +307,7 @@ TEST_CASE(
       lowest = std::min(lowest, simulation.state().q[2]);
     }
     CHECK(lowest == Approx(-0.1).epsilon(1e-4));  // as deep as the joint pulls it
-    // The residual is the speed of the path when the ball touches.
+    // The residual is the speed of the anchor when the ball touches the floor.
     CHECK(simulation.step_counters().contact_residual ==
           Approx(0.4 * std::cos(std::asin(0.5))).epsilon(1e-2));
   }

@@ -1,5 +1,6 @@
 // The contact cache: contact forces of the previous step, stored in the state, warm-start the contact solver.
-// A step without them starts cold; after ten warm-started steps in a row one step starts cold too.
+// A step without stored forces starts cold: all start values are zero. After ten warm-started steps, one step
+// starts cold too.
 #include "catch.h"
 
 #include <algorithm>
@@ -21,8 +22,8 @@ namespace {
 
 constexpr double kHalf = 0.1, kStep = 5e-3;  // m, s
 
-/// Rows of boxes on a floor; each row has one box less than the row below. Above the lowest row, each box
-/// rests on two.
+/// Adds a floor and rows of boxes; each row has one box fewer than the row below. Above the lowest row, each
+/// box rests on two boxes.
 void pyramid(MultiBody& body, int rows) {
   for (int row = 0; row < rows; ++row)
     for (int k = 0; k < rows - row; ++k) {
@@ -38,7 +39,7 @@ double weight(const MultiBody& body) {
   for (const auto& part : body.parts()) mass += part->total_mass();
   return mass * body.gravity_at(0).norm();
 }
-/// Returns the force on the floor in the contact cache of a state, N.
+/// Returns the sum of the cached forces of the floor on the parts, N, world.
 Vec3<double> cached_floor_force(const State& state) {
   Vec3<double> force = Vec3<double>::Zero();
   for (const CachedContact& cached : state.contact_cache)
@@ -48,8 +49,8 @@ Vec3<double> cached_floor_force(const State& state) {
 void clear_cache(State& state) {
   state.contact_cache.clear();
 }
-/// Steps the simulation, each step from a state modified by `change`; returns the number of sweeps of the
-/// contact solver over the contacts.
+/// Performs `steps` steps of h (s) and modifies the state by `change` before each step. Returns the number of
+/// sweeps (iterations of the contact solver over all contacts).
 template <class F>
 long sweeps(Simulation& simulation, int steps, F&& change, double h = kStep) {
   const long before = simulation.step_counters().contact_sweeps;
@@ -95,7 +96,7 @@ TEST_CASE("a heavy part on light ones needs iterations only in cold steps with t
   Simulation warm(body, "rk4"), cold(body, "rk4");
   const long warm_sweeps = sweeps(warm, 44, [](State&) {}), cold_sweeps = sweeps(cold, 44, clear_cache);
   CAPTURE(warm_sweeps, cold_sweeps);
-  CHECK(cold_sweeps <= 44 * 20);  // the first round of sweeps suffices; it has 12 sweeps
+  CHECK(cold_sweeps <= 44 * 20);  // the first round, of at most 12 sweeps, suffices
   CHECK(warm_sweeps <= 6 * 20);
   CHECK(warm.step_counters().contact_residual < 1e-11);
   CHECK(warm.state().v.norm() < 1e-11);
@@ -252,7 +253,7 @@ TEST_CASE("cached forces that overflow are not used", "[contact]") {
   CHECK(cached_floor_force(simulation.state()).z() == Approx(weight(body)).epsilon(1e-9));
 }
 
-/// A soft solid with a box on it, both near equilibrium.
+/// Adds a floor, a soft solid on the floor, and a box on the solid, near equilibrium.
 void cushion(MultiBody& body) {
   auto& part = body.add<Primitive<Superellipsoid>>("cushion", 200.0);
   part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}, {"eps1", 0.5}, {"eps2", 0.5}}).place({0, 0, 0.1});
@@ -306,7 +307,7 @@ TEST_CASE("contacts that act on nodes are not cached", "[contact]") {
 }
 
 TEST_CASE("cached forces without a load disappear", "[contact]") {
-  // A box fits between two walls. The cache says that they pressed on the box in the previous step.
+  // A box fits between two walls. The cache contains forces with which the walls pressed on the box.
   MultiBody body;
   body.contact.friction = 0.5;
   body.add(make_part("box", "box", {}, 1000)).rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}});
@@ -322,7 +323,7 @@ TEST_CASE("cached forces without a load disappear", "[contact]") {
                                        Vec3<double>((plane == 0 ? 1 : -1) * 1000, 0, weight(body) / 8)});
   simulation.set_state(state);
   for (int i = 0; i < 200; ++i) simulation.step(kStep);
-  const double fall_time = 200 * kStep - 12 * kStep;  // without the few steps that start warm
+  const double fall_time = 200 * kStep - 12 * kStep;  // the first steps start warm and are not counted
   CHECK(simulation.state().q[2] < -0.5 * body.gravity_at(0).norm() * fall_time * fall_time);
 }
 

@@ -17,7 +17,8 @@ using test::Draws;
 
 namespace {
 
-/// Adds balls in a cubic lattice; each ball touches its neighbours.
+/// Adds `high` layers of across x across balls in a cubic lattice. Each ball touches its neighbours. corner:
+/// point below the first ball, m.
 void lattice(MultiBody& body, int across, int high, const Vec3<double>& corner = Vec3<double>::Zero()) {
   const std::size_t others = body.parts().size();
   for (int k = 0; k < high; ++k)
@@ -35,8 +36,8 @@ struct Solved {
   ContactSolution solution;
 };
 
-/// Returns the contacts of a body, and the impulses for random velocities of its parts. `speed` (m/s, rad/s)
-/// is the largest component of these velocities; all parts also move downwards with this speed.
+/// Returns the contacts of a model, and their impulses if the parts have random velocities. speed: bound of
+/// the components of these velocities, m/s and rad/s. All parts also move downwards with this speed.
 Solved solve(MultiBody& body, double speed) {
   const Model model(body);
   const Dynamics dynamics(model);

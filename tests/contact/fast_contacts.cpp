@@ -38,11 +38,13 @@ void set_motion(const Model& model, int part, const Vec3<double>& c, const Eigen
 }
 
 struct ShotResults {
+  /// hits: shots that touched the target. passes: shots that passed the target or never touched it.
   int hits = 0, passes = 0;
   double deepest = 0;  ///< deepest overlap after the first contact, in units of kSize
 };
-/// Shoots parts from above at a wide target at z = 0, or at an ellipsoid. at: "plane", "mesh", "plate" (a
-/// thin part) or "body" (the ellipsoid). The speeds are from 0.1 to 10 sizes (kSize) a step.
+/// Shoots a part from above at a target `shots` times, and returns the results. at: "plane", "mesh" or
+/// "plate" (a thin part), which are wide targets at z = 0, or "body" (an ellipsoid). shape: shape of the
+/// part. The speeds are from 0.1 to 10 sizes (kSize) a step.
 ShotResults shoot(const std::string& at, const std::string& shape, int shots, Draws& draws) {
   MultiBody body;
   body.gravity.setZero();
@@ -67,8 +69,7 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
                  speed = sizes_per_step * kSize / kStep;
     const Vec3<double> along =
         Vec3<double>(draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5), -1).normalized();
-    // The distance is random, so that the contact occurs at any fraction of a step. Fast parts fly for about
-    // two steps at most, slow ones for more.
+    // The distance is random, so that the contact occurs at any fraction of a step.
     const double distance = draws.uniform(2.2, 2.2 + std::clamp(2 * sizes_per_step, 0.5, 9.8)) * kSize;
     // The offset from the middle of the other part is at most half the smallest semi-axis.
     const Vec3<double> aim = pair ? draws.vector(0.5 * kSmallest / std::sqrt(3.0)) : Vec3<double>::Zero();
@@ -87,7 +88,8 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
     const Vec3<double> x = simulation.state().q.head<3>();
     bool passed = x[2] < 0;
     if (pair && hit) {
-      // A deflected part may overtake the other part in the rest of the step, but only beside it.
+      // A deflected part may overtake the other part in the rest of the step, but only beside it. The normal
+      // of the first contact must oppose the motion.
       const Contact& first_contact = simulation.contact()->contacts().front();
       const double approach = (first_contact.a.part == 0 ? -1 : 1) * first_contact.normal.dot(along);
       const Vec3<double> d = x - simulation.state().q.segment<3>(7);
@@ -113,8 +115,8 @@ void shoot_all(int fast_shots, int slow_shots) {
       const ShotResults results = shoot(at, shape, is_fast ? fast_shots : slow_shots, draws);
       CAPTURE(at, shape, results.hits);
       CHECK(results.passes == 0);
-      // An impact may start a rotation, by which the other end of the part overlaps the target: 4e-3 has been
-      // observed.
+      // An impact may start a rotation, by which the other end of the part overlaps the target: 4e-3 sizes
+      // have been observed.
       CHECK(results.deepest < 1e-2);
     }
 }

@@ -1,5 +1,5 @@
-// Contact of parts whose local deformation is a sum of modes: the surface of their mesh is in contact, and an
-// impulse changes the motion of the whole part.
+// Contact of parts whose local deformation is a sum of modes. The contacts are on the surface mesh of the
+// part, and an impulse changes the motion of the whole part.
 #include "catch.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using Basis = LocalSettings::Basis;
 
 constexpr double kRadius = 0.1;
 
-/// Adds an elastic ball whose local deformation is a sum of polynomials of degree 4.
+/// Adds an elastic ball whose local deformation is a sum of polynomials of degree 4. E: Young's modulus, Pa.
 Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, double E = 2e5) {
   auto& part = body.add<Primitive<Sphere>>(name, 1000.0);
   part.rest({{"r", kRadius}}).place(at);
@@ -41,8 +41,8 @@ Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, do
   return part;
 }
 
-/// Adds a shell that oscillates while it falls onto a floor, with nodes (Basis::nodes) or with all modes of
-/// its mesh. parameters: whether two semi-axes are dynamic.
+/// Adds a floor, and a shell that oscillates while it falls onto the floor. basis: Basis::nodes, or
+/// Basis::modes for all modes of the mesh. parameters: whether two semi-axes are dynamic.
 void falling(MultiBody& body, Basis basis, bool parameters) {
   body.contact.friction = 0.4;
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
@@ -65,7 +65,7 @@ struct PlaneImpact {
   ContactSolution solution;
 };
 
-/// Returns the impulses on all nodes that are behind the floor at the start.
+/// Returns the contacts of all nodes that are below the floor at the start, and their impulses.
 PlaneImpact strike(Basis basis, bool parameters) {
   MultiBody body;
   falling(body, basis, parameters);
@@ -90,7 +90,8 @@ TEST_CASE("impulses on all modes of a shell agree with those on its nodes", "[co
     REQUIRE(nodes.contacts.size() == modes.contacts.size());
     REQUIRE(nodes.contacts.size() >= 3);
     CHECK(modes.solution.residual < 1e-12);
-    // Systems of many mesh contacts are solved to a relative accuracy of one in a million.
+    // The nodes are point masses. Contacts of point masses are solved only to 1e-6 of the largest contact
+    // velocity (kSweepExactOfPointMasses in solve/coulomb_cluster-inl.h).
     double largest = 0;
     for (const Vec3<double>& p : nodes.solution.impulse) largest = std::max(largest, p.norm());
     REQUIRE(largest > 0);
