@@ -133,7 +133,7 @@ TEST_CASE("a ball touches a box at its nearest point: of a face, an edge or a co
   check({0.1, 0.1, -0.25}, {0, 0, -1}, -0.05 - 0.2);
   check({0.5, 0.1, 0.1}, {1, 0, 0}, -0.2);
   // The contact point on the box is the point nearest to the ball. For a centre inside the box, the normal is
-  // the shortest way out.
+  // along the shortest way out.
   Draws draws(9);
   for (int i = 0; i < 200; ++i) {
     const Vec3<double> at(draws.uniform(-0.8, 0.8), draws.uniform(-0.7, 0.7), draws.uniform(-0.6, 0.6));

@@ -189,8 +189,9 @@ TEST_CASE("the closed forms of ellipsoids agree with the search for other shapes
     for (std::size_t k = 0; k < 2; ++k) {
       CHECK(found[k].plane == searched[k].plane);
       const double between = (found[k].x - searched[k].x).norm();
-      CHECK(between < 1e-4);  // points agree to the square root of the accuracy of the heights
-      // The level w is stationary at the contact; the factor 1 / |grad w| that converts it to a gap is not.
+      CHECK(between < 1e-4);  // the error is the square root of the error of the gap
+      // The inside-outside function f is stationary at the contact. The factor 1 / |grad f|, which converts f
+      // to a gap, is not.
       const double tolerance = 1e-9 + 10 * std::abs(found[k].gap) * between;
       CHECK(std::abs(found[k].gap - searched[k].gap) <= tolerance);
       CHECK((found[k].normal - searched[k].normal).norm() < 1e-3);
@@ -202,9 +203,11 @@ TEST_CASE("faces whose edges coincide to rounding touch at all corners", "[conta
   Draws draws(29);
   auto rounding = [&] { return Vec3<double>(1e-12 * draws.vector(1)); };
   for (int trial = 0; trial < 500; ++trial) {
-    // Some boxes are upright, because rounding decides the order of their corners; others are rotated.
+    // Two thirds of the pairs are upright: there, rounding decides the order of the corners. The others are
+    // rotated.
     const Eigen::Quaterniond R = trial % 3 < 2 ? Eigen::Quaterniond::Identity() : random_rotation(draws);
-    // Edges coincide along one direction; along the other they coincide or the upper box is displaced.
+    // The edges coincide along y. Along x they coincide in every second trial; otherwise the upper box is
+    // displaced.
     const double aside = trial % 2 == 0 ? 0 : 0.005;
     MultiBody body;
     body.contact.between_parts = true;

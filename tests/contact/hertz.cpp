@@ -19,14 +19,15 @@ namespace {
 
 constexpr double kNu = 0.3, kRadius = 0.1, kDensity = 1000, kG = 9.81;
 
-/// E* against a rigid body, in units of E.
+/// E* of the ball against a rigid body, in units of Young's modulus E.
 constexpr double kStiff = 1 / (1 - kNu * kNu);
 
 /// A ball of E = 1 and R = 1 that a body force presses onto a smooth rigid plane, in linear elasticity. `sag`
 /// is the distance by which its centre of mass approaches the plane. For small forces the solution tends to
 /// that of Hertz's half space: F = 4/3 E* sqrt(R) sag^(3/2), a^2 = R sag with the contact radius a. Here
 /// pressures on rings about the pole balance the body force. Their displacements are sums over Legendre
-/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964). At r = 1 they are
+/// polynomials P_n(cos theta) (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964). At r = 1
+/// the terms of order n are, with constants A and B and Poisson's ratio nu,
 ///   u_r = [A (n+1)(n-2+4 nu) + B n] P_n,   u_theta = [A (n+5-4 nu) + B] dP_n/dtheta.
 struct PressedBall {
   double sag = 0, contact = 0;  ///< the approach, and the radius of the contact
@@ -71,8 +72,8 @@ struct PressedBall {
     }
     const Array weight = 2 * kPi * (edge.head(rings) - edge.tail(rings)) * x;
     const double force = 4.0 / 3 * kStiff * a * a * a;
-    // The k inner rings are in contact: their pressures p satisfy x + u p = 1 - sag. k falls until no
-    // pressure is negative.
+    // The k inner rings are in contact: their pressures p satisfy x + u p = 1 - sag. k decreases until the
+    // pressure of the outermost ring is not negative.
     for (int k = rings;; --k) {
       MatX<double> A = MatX<double>::Zero(k + 1, k + 1);
       VecX<double> b(k + 1);
@@ -107,10 +108,10 @@ Part& elastic_ball_above(MultiBody& body, double E, int resolution, double above
 TEST_CASE("a pressed ball agrees with Hertz's half space for small contacts", "[contact]") {
   const PressedBall small(0.1), large(0.2);
   const double small_ratio = small.sag / (0.1 * 0.1), large_ratio = large.sag / (0.2 * 0.2);
-  // The correction is of the order of the contact radius.
+  // The correction of the ratio is of the order of the contact radius, in radii of the ball.
   CHECK(small_ratio < 0.96);
   CHECK(2 * small_ratio - large_ratio == Approx(1).margin(0.01));
-  CHECK(small.contact == Approx(0.1).epsilon(0.04));  // to the width of a ring
+  CHECK(small.contact == Approx(0.1).epsilon(0.04));  // the tolerance is about the width of a ring
   CHECK(large.contact == Approx(0.2).epsilon(0.04));
 }
 

@@ -32,8 +32,9 @@ Part& ball_on_floor(MultiBody& body, double friction) {
       .velocity({1, 0, 0}, {0, 0, 0});
 }
 
-/// A ball starts at rest on top of a larger fixed ball, at this angle from the vertical, rad.
+/// Initial angle of the rolling ball in hill() from the vertical, rad.
 constexpr double kStart = 0.2;
+/// Adds a ball at rest on a larger fixed ball. The friction is so large that the ball rolls.
 void hill(MultiBody& body) {
   body.contact.active = true;
   body.contact.friction = 2;
@@ -43,7 +44,8 @@ void hill(MultiBody& body) {
       .place({1.1 * std::sin(kStart), 0, 1.1 * std::cos(kStart)});
 }
 
-/// Returns the angle (rad) of the rolling ball at time t: (R + r) angle'' = 5/7 g sin(angle).
+/// Returns the angle (rad) of the rolling ball at time t (s), by RK4: (R + r) angle'' = 5/7 g sin(angle),
+/// with the radii R = 1 m and r = 0.1 m.
 double angle_on_hill(double t) {
   constexpr int steps = 4000;
   const double h = t / steps;
@@ -136,7 +138,7 @@ TEST_CASE("a resting stack stays exactly at rest, in steps limited by the free f
       CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
       CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
     }
-    // g h^2 / 2 is limited to 0.4 times the height of a box, 0.2 m.
+    // The fall in a free step h, g h^2 / 2, is limited to 0.4 times the thickness of a box, 0.2 m.
     CHECK(simulation.step_counters().steps < 120);
     // Resting contacts alone need no step doubling.
     CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);

@@ -25,7 +25,7 @@ struct Mesh {
 };
 
 /// Returns a grid of n x n squares over [-1, 1]^2, two triangles each, mapped into space by `map`. Before
-/// that, the inner vertices are displaced at random by up to `random` times their spacing.
+/// that, the inner vertices are displaced at random along x and y, by up to `random` times their spacing.
 Mesh sheet(int n, double random, const std::function<Vec3<double>(double, double)>& map) {
   Draws draws(7);
   Mesh mesh;
@@ -228,10 +228,10 @@ TEST_CASE(
       }
       Simulation simulation(body, "rk4");
       test::run(simulation, 0.9, 90);
-      // The ball reaches the plate after 0.45 s.
+      // The ball reaches the plate or mesh after 0.45 s.
       if (two_sided || from > 0)
         CHECK(simulation.state().q[2] == Approx(from).margin(1e-9));
-      else  // parts that are more than half through are pushed out
+      else  // the ball passes, and is pushed out when it is more than half through
         CHECK(simulation.state().q[2] == Approx(-0.8 * from).margin(0.01));
     }
   MultiBody body;
@@ -255,7 +255,7 @@ TEST_CASE("N53: fast parts do not pass through a mesh without thickness", "[cont
     const Vec3<double> start(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 0.5);
     const Vec3<double> omega(draws.uniform(-9, 9), draws.uniform(-9, 9), draws.uniform(-9, 9));
     Part& part = is_box ? box(body, {0.05, 0.02, 0.01}, start) : ball(body, 0.02, start);
-    // 2 to 10 times the largest half extent in a step.
+    // The part moves 2 to 10 times its largest half extent in a step.
     const double speed = draws.uniform(2, 10) * part.rest({}).parameters()[0].rest_value() / 1e-2;
     part.velocity(speed * Vec3<double>(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), -1), omega);
     body.plate("plate", {0, 0, 0}, Eigen::Quaterniond::Identity(), 5, 5);

@@ -1,5 +1,6 @@
-// Contact with planes that are active for a short time, and with planes and parts that move within a step.
-// The order of two parts does not matter. A small part deep in a large one is separated slowly.
+// Contact with planes that are active for a short time, and with planes and parts that move to and fro within
+// a step. The order in which two parts are added does not matter. A small part deep in a large one is
+// separated slowly.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>

@@ -21,7 +21,7 @@ bool equal(const Contact& one, const Contact& other) {
          one.b.material.cv.x == other.b.material.cv.x;
 }
 
-/// Adds overlapping bodies of three kinds, on two planes and on a mesh.
+/// Adds 60 overlapping parts of three shapes, two planes, and an obstacle of one triangle.
 void overlapping_bodies(MultiBody& body, Draws& draws) {
   for (int i = 0; i < 60; ++i) {
     const char* shape = i % 3 == 0 ? "ellipsoid" : i % 3 == 1 ? "box" : "capsule";

@@ -27,7 +27,8 @@ Part& cylinder(MultiBody& body, const std::string& name, double radius, double h
   return test::add(body, name, "cylinder", {}, 1000)
       .rest({{"a1", radius}, {"a2", radius}, {"a3", half_height}});
 }
-/// Adds a cone or frustum 0.3 m high, with radius 0.1 m at half height.
+/// Adds a cone or frustum 0.3 m high, with radius 0.1 m at half height. slope: the parameter t; -1 is a cone
+/// with its tip up, 1 a cone with its tip down.
 Part& cone(MultiBody& body, const std::string& name, double slope) {
   return test::add(body, name, "cone", {}, 1000).rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.15}, {"t", slope}});
 }
@@ -219,8 +220,9 @@ TEST_CASE("standing cylinders, flat tori and lying cylinders along their axis st
 }
 
 TEST_CASE("cylinders, capsules and tori roll down a slope by the closed form", "[contact]") {
-  // a = g sin(angle) / (1 + I / (m r^2)). Sample points represent the rim of a cylinder and the side of a
-  // capsule. Rolling from one sample point to the next costs some speed: a thousandth in all.
+  // a = g sin(angle) / (1 + I / (m r^2)), with the radius r of rolling and the moment of inertia I. Sample
+  // points represent the rim of a cylinder and the side of a capsule. Rolling from one sample point to the
+  // next dissipates some speed: a thousandth in the whole run.
   const double angle = 0.3, tube = 0.05, ring = 0.15, r = 0.1, l = 0.3;
   const double side = l, caps = 4.0 / 3 * r;  // volumes of the cylinder and of both caps, divided by pi r^2
   struct Case {

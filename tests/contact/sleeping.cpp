@@ -1,5 +1,5 @@
-// Sleep of bodies at rest: their states do not change in any bit and need no evaluation; impacts, and changes
-// of what acts on them, wake them.
+// Sleep of bodies at rest. The state of a sleeping body does not change by a bit and needs no evaluation.
+// Impacts, and changes of the forces, joints and supports of a body, wake it.
 #include "catch.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ Part& cube(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   return part;
 }
 
-/// Adds a tower of cubes on a floor; sleep is active.
+/// Adds a tower of n cubes on a floor, and activates sleep.
 void tower(MultiBody& body, int n) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   body.contact.sleep = Sleep{1e-3, 0.1};
@@ -45,13 +45,13 @@ bool none_sleeps(const Simulation& simulation) {
   return std::none_of(rest_times.begin(), rest_times.end(), [](double time) { return time < 0; });
 }
 
-/// Steps until all bodies sleep, for at most 1 s.
+/// Steps until all bodies sleep. Requires that this takes at most 1 s.
 void run_until_asleep(Simulation& simulation) {
   for (int i = 0; i < 500 && !all_sleep(simulation); ++i) simulation.step(kStep);
   REQUIRE(all_sleep(simulation));
 }
 
-/// Returns whether all bodies wake within 20 steps.
+/// Steps until no body sleeps, at most 20 times. Returns whether this is achieved.
 bool wakes(Simulation& simulation) {
   for (int i = 0; i < 20; ++i) {
     simulation.step(kStep);

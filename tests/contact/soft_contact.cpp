@@ -1,5 +1,5 @@
-// Contact of parts with local deformation: their nodes against planes, their surface meshes against other
-// parts.
+// Contact of parts with local deformation: contacts of their nodes with planes, and of their surface meshes
+// with other parts and obstacles.
 #include "catch.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// Adds a rubber shell with 98 nodes, R = 0.1 m, under the pressure `air` (Pa).
+/// Adds a rubber shell with 98 nodes and the radius 0.1 m. air: internal pressure, Pa; 0: none.
 Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, double air = 20) {
   auto& part = body.add<Primitive<Ellipsoid>>(name, 1.0);
   part.make_shell().rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place(at);
@@ -38,7 +38,7 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
   return part;
 }
 
-/// Returns the height of the lowest node of all parts above the plane z = 0, m.
+/// Returns the height of the lowest node of all parts above the plane z = 0, m, at most 1.
 double lowest(const Simulation& simulation) {
   double min_height = 1;
   for (int i = 0; i < static_cast<int>(simulation.model().parts().size()); ++i) {
@@ -50,8 +50,8 @@ double lowest(const Simulation& simulation) {
   return min_height;
 }
 
-/// Runs 0.3 s. Checks that parts meet, and at every tenth step that no overlap exceeds 1e-3 of a balloon's
-/// size.
+/// Runs 0.3 s. Checks that parts touch, and at every tenth step that no overlap exceeds 1e-3 of the radius of
+/// a balloon.
 void run_contact(Simulation& simulation) {
   double deep = 0;
   bool met = false;
@@ -247,8 +247,8 @@ struct Ground {
         triangles.col(t++) = Eigen::Vector3i(k, next + 1, k + 1);
       }
   }
-  /// Returns the distance of a point from the plane of the triangle above or below it, m. It is negative
-  /// below the triangle. Returns 1 beside the mesh.
+  /// Returns the distance of a point from the plane of the triangle above or below the point, m. The distance
+  /// is negative below the triangle. Returns 1 if no triangle is above or below the point.
   double above(const Vec3<double>& p) const {
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
       const Vec3<double> a = x.col(triangles(0, t)), b = x.col(triangles(1, t)), c = x.col(triangles(2, t));
@@ -263,7 +263,7 @@ struct Ground {
   }
 };
 
-/// Returns the depth of a point in a closed mesh, m; 0 outside.
+/// Returns the distance of a point inside a closed mesh from the surface, m, at most 1. Returns 0 outside.
 double depth_in(const ObstacleMesh& mesh, const Vec3<double>& p) {
   double solid_angle = 0, nearest = 1;
   for (int t = 0; t < mesh.triangles().cols(); ++t) {

@@ -51,7 +51,8 @@ Part& add_missile(MultiBody& body, const std::string& name, const std::string& k
   part.deform_locally(settings);
   return part;
 }
-/// Adds the target of the shots at the origin. Targets other than a body are below z = 0.
+/// Adds the target of the shots at the origin. at: an element of kTargets. kind: kind of a free part, as for
+/// add_missile(). Targets other than a free part are below z = 0.
 void add_target(MultiBody& body, const std::string& at, const std::string& kind) {
   if (at == "plane") body.plane("target", Vec3<double>(0, 0, 0), {0, 0, 1});
   if (at == "mesh") body.plate("target", {0, 0, 0}, Eigen::Quaterniond::Identity(), 1, 1);
@@ -87,7 +88,8 @@ void set_motion(const PartModel& m, const Shot& shot, Draws& draws, State& state
   state.q.segment<7>(m.q0) << shot.from, R.w(), R.x(), R.y(), R.z();
   state.v.segment<6>(m.v0) << shot.velocity, draws.vector(1);
 }
-/// Returns the mean position of the surface of a part, m.
+/// Returns the mean position of the vertices of the contact mesh of a part with local deformation, m, world.
+/// Returns the position of a rigid part.
 Vec3<double> mean_position(const Simulation& simulation, int part) {
   const Model& model = simulation.model();
   const Vec3<double> c = model.position(simulation.state(), part);
@@ -99,10 +101,12 @@ Vec3<double> mean_position(const Simulation& simulation, int part) {
 
 struct ShotResults {
   /// hits: shots that touched the target or were refused. passes: shots that passed the target or never
-  /// touched it.
+  /// touched it. refused: shots with a step that failed.
   int hits = 0, passes = 0, refused = 0;
   double deepest = 0;  ///< deepest overlap at the end of a shot, in lengths
 };
+/// Shoots a part of a kind at a target `shots` times, and returns the results. max_lengths: largest
+/// displacement in a step, in lengths; the smallest is 0.1. speed: m/s.
 ShotResults shoot(const std::string& kind, const std::string& at, int shots, double max_lengths, double speed,
                   Draws& draws) {
   MultiBody body;

@@ -1,5 +1,5 @@
 // The work of friction in the ledger, for sliding blocks, a ball that starts to roll and a conveyor belt.
-// Without sliding the ledger records no work.
+// Without sliding the ledger records no work of friction.
 #include "catch.h"
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST_CASE("friction dissipates mu m g times the distance that a block slides", "
       check_friction(simulation, 0.5 * block.total_mass() * (2 * 2 + 0.5 * 0.5));
     }
     if (method != "semi_implicit_euler") continue;
-    // The distance has the error of the method, which is of first order.
+    // The distance has an error of first order, that of the method.
     CHECK(test::observed_order(errors) == Approx(1).margin(0.02));
     CHECK(errors.back() < 4e-3);
   }

@@ -1,6 +1,6 @@
 // Balls are packed densely between a floor and four walls, with about five thousand simultaneous contacts.
 // The tests check the accuracy of the impulses, the memory, and the growth of the time with the number of
-// contacts. Also piles and a poured heap.
+// contacts. Other tests use piles and a poured heap.
 #include "catch.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ namespace {
 
 constexpr double kG = 9.81, kStep = 2e-3, kRadius = 0.1;
 
-/// Adds a square layer of balls that touch their neighbours; `first` is the position of the first ball.
+/// Adds a square layer of across x across balls that touch their neighbours. first: position of the first
+/// ball, m.
 void layer(MultiBody& body, int across, const Vec3<double>& first) {
   for (int i = 0; i < across; ++i)
     for (int j = 0; j < across; ++j)
@@ -45,7 +46,8 @@ void walls(MultiBody& body, double width) {
   body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
   body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
 }
-/// Adds five layers between four walls; each ball is in the hollow between four balls below.
+/// Adds five layers of balls between a floor and four walls. across: number of balls along each edge of the
+/// lowest layer. Each ball above this layer is in the hollow between four balls below.
 void pack(MultiBody& body, int across) {
   for (int k = 0; k < 5; ++k) {
     const double in = kRadius * (1 + k % 2);
@@ -59,7 +61,8 @@ std::size_t packed_contacts(int across) {
   return static_cast<std::size_t>(3 * 2 * n * (n - 1) + 2 * 2 * m * (m - 1) + 4 * 4 * m * m + n * n +
                                   4 * 3 * n);
 }
-/// Adds a floor and `across` layers of balls that become smaller towards the top.
+/// Adds a floor and a pyramid of `across` layers of balls. Each layer has one ball fewer along each edge than
+/// the layer below.
 void pile(MultiBody& body, int across) {
   for (int k = 0; k < across; ++k)
     layer(body, across - k, kRadius * Vec3<double>(k, k, 1 + k * std::sqrt(2.0)));

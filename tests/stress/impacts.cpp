@@ -1,5 +1,5 @@
 // Planes that appear inside parts, impacts on a board supported by a floor and a hinge, strings that become
-// taut: the ledger records the work of impulses, and changes of momentum equal the reported impulses.
+// taut. The ledger records the work of impulses, and changes of momentum equal the reported impulses.
 #include "catch.h"
 
 #include <algorithm>

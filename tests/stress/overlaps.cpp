@@ -90,7 +90,7 @@ Part& ball(MultiBody& body, const std::string& name, const std::string& kind, co
   part.deform_locally(settings);
   return part;
 }
-/// Results of the separation of two balls of `ball`.
+/// Results of the separation of two parts of ball().
 struct Separation {
   double first_overlap = 0;  // overlap at the start, m
   double fastest = 0;   // largest relative speed of their centres while they overlap by more than 0.2 kSize,
@@ -193,8 +193,8 @@ TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest fa
 }
 
 TEST_CASE("N54: parts with local deformation are separated as wholes, from any depth", "[contact][long]") {
-  // The last part of the overlap is separated node by node, which dents the parts slightly. Only these dents
-  // need work.
+  // The last remainder of the overlap is separated node by node, which dents the parts slightly. Only these
+  // dents need work.
   struct Case {
     const char *one, *other, *method;
     double h, max_work;  // step, s; largest permitted work of contact, J
@@ -340,7 +340,7 @@ TEST_CASE("N54: a rigid part is lifted out of the floor, and the ledger records 
       const double start = simulation.ledger().energy();
       const State first = simulation.state();
       test::run(simulation, h, 1);
-      // The displacement may also contain the fall in the step, with the velocity at the end of the step.
+      // The limit also allows for the fall in the step, with the velocity at the end of the step.
       CHECK(simulation.state().q[2] - first.q[2] <= h * kSeparationSpeed * kSize + 2.01 * 9.81 * h * h);
       test::run(simulation, 0.4 - h, static_cast<int>(std::lround(0.4 / h)) - 1);
       const Ledger ledger = simulation.ledger();

@@ -1,6 +1,6 @@
 // Events other than impacts and forces that wake sleeping bodies: prescribed motion of a part or of the end
-// of a string, planes that appear, and plates that appear or disappear. Other prescribed motion does not wake
-// them.
+// of a string, planes that appear, and plates that appear or disappear. Prescribed motion that does not touch
+// or pull a sleeping body does not wake it.
 #include "catch.h"
 
 #include <algorithm>
@@ -22,6 +22,7 @@ constexpr double kStep = 2e-3;
 Part& cube(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   return test::add(body, name, "box", {}, 500).rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place(at);
 }
+/// Adds a tower of two cubes without a floor, and activates sleep.
 void tower(MultiBody& body) {
   body.contact.sleep = Sleep{1e-3, 0.1};
   body.contact.active = true;
@@ -38,7 +39,7 @@ Part& add_moving_box(MultiBody& body, const Vec3<double>& half, TimeVector posit
       .rest({{"a1", half[0]}, {"a2", half[1]}, {"a3", half[2]}})
       .prescribe(motion);
 }
-/// Returns from + scale max(t - 0.5, 0).
+/// Returns from + scale max(t - 0.5 s, 0).
 TimeFunction ramp_at_half(const std::string& scale, const std::string& from) {
   return TimeFunction::formula(from + " + " + scale + " * max(t - 0.5, 0)");
 }
