@@ -22,8 +22,9 @@ using test::widest_gap;
 
 namespace {
 
-/// Adds a random tree of ellipsoids on ball joints. Its first part is joined to the world; the parts start in
-/// random poses, up to `apart` body lengths (1 m) from each other along each axis.
+/// Adds a random tree of ellipsoids on ball joints, whose first part is joined to the world. The parts start
+/// in random poses, up to `apart` body lengths (1 m) from each other along each axis. joints: number of
+/// joints and of parts.
 void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) {
   Draws draws(seed);
   body.stabilization.assemble_first = true;

@@ -127,7 +127,7 @@ TEST_CASE("slider, line and plane: the free directions fall freely", "[joints]")
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody body;
       Part& block = ellipsoid(body, "block", {0.2, 0.3, 0.4}, turn({1, 2, 0}, 0.5));
-      // A line or a plane through the centre exerts no torque; a slider may act at any point.
+      // A line or a plane joint at the centre exerts no torque. A slider may act at any point.
       JointSetting setting{point(block, 0.3, 0.2, type == std::string("slider") ? 1 : 0), {}};
       Vec3<double> x0(0.2, 0.3, 0.4);
       block.prepare();
@@ -160,7 +160,8 @@ TEST_CASE(
       for (const int steps : {400, 800}) {
         MultiBody body;
         Part& a = test::tumbling_solid(body, "a");
-        // The parameters have their rest values, so that the joint's directions have their values of time 0.
+        // The directions of the joint are defined on the rest shape. The rest values equal the initial
+        // values, so that these directions are also those of time 0.
         a.rest({{"a1", 0.32}, {"twist.angle", 0.6}, {"bend.angle", 0.6}, {"bend.direction", 0.3}});
         if (!deforming) {
           std::vector<std::string> names;
@@ -355,7 +356,8 @@ TEST_CASE("N48: joints switch on and off at their times, also between steps", "[
     for (int i = 0; i < 700; ++i) simulation.step(on / 700);
     simulation.step(1e-12);
     REQUIRE(simulation.state().joints[0] == JointMode::closed);
-    // Impulse J on part a: W J = -C_dot.
+    // The impulse J on part a satisfies W J = -C_dot, with the inverse effective mass W of the joint and the
+    // relative velocity C_dot of its points before the impulse.
     auto cross = [](const Vec3<double>& x) {
       Mat3<double> X;
       X << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;

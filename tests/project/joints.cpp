@@ -31,13 +31,14 @@ Point centre(const Part& part) {
   return point(part, 0, 0, 0);
 }
 
-/// Two spheres in free space, with an open joint between their centres; nothing rotates.
+/// Adds two spheres with an open joint between their centres, and sets gravity to zero. Nothing rotates.
 void open_pair(MultiBody& body) {
   body.gravity.setZero();
   Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
   body.ball("ab", centre(a), centre(b));
 }
 
+/// Returns the first minus the second point of a joint, m, world.
 Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
   const Joint& j = *simulation.model().joints()[joint].joint;
   auto place = [&](const Point& p) -> Vec3<double> {
@@ -48,8 +49,8 @@ Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
   return place(j.points()[0]) - place(j.points()[1]);
 }
 
-/// A chain of ellipsoids 0.6 m long that hangs from the origin. It starts along x, joined tip to tip. turn:
-/// initial rotation about x of each link relative to the link before, rad.
+/// Adds a chain of ellipsoids 0.6 m long, joined tip to tip. The first tip is joined to the origin, and the
+/// chain starts along x. turn: initial rotation about x of each link relative to the link before, rad.
 void chain(MultiBody& body, int links, double turn = 0) {
   for (int i = 0; i < links; ++i) {
     const std::string name = "link" + std::to_string(i);
@@ -118,7 +119,8 @@ TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding a
 
 namespace {
 
-/// Returns whether a gap decays under critically damped Baumgarte terms with alpha h = x.
+/// Returns whether a gap decays under critically damped Baumgarte terms with the rate alpha and the step h,
+/// alpha h = x. Fails the test if the gap neither decays nor grows by a factor of 1e6.
 bool decays(const char* method, double x) {
   MultiBody body;
   open_pair(body);
@@ -145,7 +147,7 @@ bool decays(const char* method, double x) {
 TEST_CASE("N34: the stability limits of Baumgarte's equation, for alpha h from 0.01 to 4 and above",
           "[joints][long]") {
   // Limits x = alpha h of the explicit methods: |R(-x)| = 1, with the stability function R of the method. The
-  // linearly implicit method treats joints explicitly. 0: no limit.
+  // linearly implicit method treats joints explicitly. The value 0 means no limit.
   const std::map<std::string, double> stability_limits{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
                                                        {"rk4", 2.785294},
                                                        {"linearly_implicit", 0.960432},
@@ -172,7 +174,8 @@ TEST_CASE("N34: the stability limits of Baumgarte's equation, for alpha h from 0
 
 namespace {
 
-/// Two spheres that translate and rotate, joined away from their centres by a wide open joint.
+/// Adds two spheres that translate and rotate, joined away from their centres by a wide open joint. Sets
+/// gravity to zero.
 void open_and_turning(MultiBody& body) {
   body.gravity.setZero();
   Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {1, 0.5, 0.3}, 400);
@@ -732,7 +735,7 @@ TEST_CASE("N36: ellipsoids assemble during the run from any place and pose, with
   const char* method = GENERATE("rk4", "semi_implicit_euler");
   const int joints = GENERATE(1, 4, 12);
   const double apart = GENERATE(3, 10, 30, 100), h = 2e-3;
-  if (joints * apart > 130) return;  // CPU time
+  if (joints * apart > 130) return;  // this limits the processor time
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     test::Draws draws(100 * seed + static_cast<std::uint64_t>(joints));
     MultiBody body;
@@ -919,7 +922,7 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
-/// Methods and their tolerances: every method with fixed steps (tolerance 0), and four choices with error
+/// Methods and their tolerances: every method with fixed steps (tolerance 0), and four methods with error
 /// control.
 const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"semi_implicit_euler", 0},

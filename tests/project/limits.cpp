@@ -13,7 +13,8 @@ namespace {
 
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 
-/// Steps the simulation and checks after each step that every parameter is exactly within its limits.
+/// Advances the simulation by the time `end` (s) and requires after each step that every parameter is exactly
+/// within its limits.
 void run_within(Simulation& simulation, double end, int steps) {
   for (int i = 0; i < steps; ++i) {
     simulation.step(end / steps);
@@ -152,7 +153,8 @@ TEST_CASE("several limits at once, coupled by the mass matrix", "[limits]") {
                        {"shear.sx", 1},
                        {"shear.sy", -2}});
     part.velocity({0.3, 0, 0}, {2, -1, 3});
-    // Outwards along the line between two opposite points: the part stretches and shears, and hardly rotates.
+    // Two forces act outwards along the line between two opposite points, so that the part stretches and
+    // shears, and hardly rotates.
     const Vec3<double> push =
         8000 * part.s({material_at(0.4, 0.5)}, part.parameters().rest()).col(0).normalized();
     body.force("push", point(part, 0.4, 0.5), TimeVector(push), Frame::body);
@@ -224,7 +226,7 @@ TEST_CASE("limits are checked at the rest value, in either order of the calls", 
   Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
   part.make_dynamic({"a1"}).limits("a1", {0.002, 900}).rest({{"a1", 5}});
   CHECK_THROWS_WITH(Model(body), test::has_text("limits [0.002, 900] of a1 must be within"));
-  part.limits("a1", {0.005, 4000});  // more than the default rest value allowed
+  part.limits("a1", {0.005, 4000});  // wider than the default rest value allows
   CHECK_NOTHROW(Model(body));
 }
 
@@ -243,7 +245,7 @@ TEST_CASE("directional derivatives keep parameters at active limits fixed", "[li
   REQUIRE(work.v_dot[7] == Approx(0).margin(1e-12));
   const VecX<double> dq = VecX<double>::Constant(state.q.size(), 0.01);
   VecX<double> dv = VecX<double>::Constant(state.v.size(), 0.1);
-  dv[7] = 0;  // zero, because the parameter would otherwise leave its limit
+  dv[7] = 0;  // zero, because the parameter is to stay at its limit
   const VecX<double> d = simulation.dynamics().jvp(state, {dq, dv});
   CHECK(std::abs(d[7]) <= 1e-12 * d.norm());
   Workspace<double> more;

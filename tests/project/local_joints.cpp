@@ -16,6 +16,7 @@ using test::widest_gap;
 
 namespace {
 
+/// Adds an ellipsoidal shell with a net of springs. soft: whether its semi-axes are dynamic.
 Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, bool soft) {
   auto& part = body.add<Primitive<Ellipsoid>>(name, 2.0);
   part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).place(at);

@@ -29,7 +29,8 @@ LocalSettings soft(int resolution, bool shell, int order = 1) {
   return settings;
 }
 
-/// Returns how far opposite poles of a free ball move apart under a pull of 1 N at each.
+/// Returns how far opposite poles of a free ball move apart under a pull of 1 N at each pole, m. patch:
+/// radius of the patch on which each force acts, m; 0: the force acts at the pole.
 double stretch(int resolution, double patch) {
   Primitive<Sphere> ball("ball", 1000);
   ball.deform_locally(soft(resolution, false));

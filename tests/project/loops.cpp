@@ -54,8 +54,8 @@ Point world_at(const Vec3<double>& x) {
   return world(x[0], x[1], x[2]);
 }
 
-/// A planar four-bar linkage in the plane y = 0: a crank of 0.35 m that can make full turns, a coupler and a
-/// rocker.
+/// Adds a planar four-bar linkage in the plane y = 0: a crank of 0.35 m that can make full turns, a coupler
+/// and a rocker. mass_ratio: mass of the coupler, kg; the other bars have 1 kg.
 void four_bar(MultiBody& body, double mass_ratio = 1) {
   const Vec3<double> O(0, 0, 0), C(1, 0, 0), A = 0.35 * Vec3<double>(std::cos(1.2), 0, std::sin(1.2));
   // B is 0.9 m from A and 0.8 m from C.
@@ -71,8 +71,8 @@ void four_bar(MultiBody& body, double mass_ratio = 1) {
   hinge(body, end_of(rocker), world_at(C), kY);
 }
 
-/// Problem A02 of the IFToMM library of multibody benchmarks: windows + 1 upright rods on the ground, 1 m
-/// apart, with bars between their upper ends. The uprights rotate at 1 rad/s, and the bars translate.
+/// Adds problem A02 of the IFToMM library of multibody benchmarks: windows + 1 upright rods on the ground, 1
+/// m apart, with bars between their upper ends. The uprights rotate at 1 rad/s, and the bars translate.
 void windows_in_a_row(MultiBody& body, int windows) {
   std::vector<Part*> upright;
   for (int i = 0; i <= windows; ++i) {
@@ -90,7 +90,8 @@ void windows_in_a_row(MultiBody& body, int windows) {
   }
 }
 
-/// IFToMM A04, Bricard's mechanism: six edges of a cube form a hexagon; the first edge is the ground.
+/// Adds IFToMM A04, Bricard's mechanism: six edges of a cube form a hexagon; the first edge is the ground.
+/// mass_ratio: mass of every second link, kg; the other links have 1 kg.
 void bricard(MultiBody& body, double mass_ratio = 1) {
   const std::array<Vec3<double>, 6> corners{kX, kX + kY, kY, kY + kZ, kZ, kZ + kX};
   // Each pin is perpendicular to both edges of its corner.
@@ -105,8 +106,8 @@ void bricard(MultiBody& body, double mass_ratio = 1) {
   hinge(body, end_of(*before), world_at(corners[0]), pins[0]);
 }
 
-/// Rods on ball joints in a ring of radius 1 m about the origin. The ring rotates about its axis and
-/// oscillates along it.
+/// Adds rods on ball joints in a ring of radius 1 m about the origin. The ring rotates about its axis and
+/// oscillates. mass_ratio: mass of every second rod, kg; the other rods have 1 kg.
 void ring(MultiBody& body, int links, double mass_ratio = 1) {
   auto at = [&](double i) {
     const double angle = 2 * kPi * i / links;
@@ -126,8 +127,8 @@ void ring(MultiBody& body, int links, double mass_ratio = 1) {
   }
 }
 
-/// Masses of the links of a chain, kg. The first function gives 1 kg to all links except the last; the second
-/// alternates two masses.
+/// Return the mass (kg) of a link as a function of its number. heavy_end: `mass` for the last link, 1 kg for
+/// all others. alternating: two masses in turn.
 std::function<double(int)> heavy_end(int links, double mass) {
   return [=](int i) { return i + 1 == links ? mass : 1; };
 }
@@ -135,8 +136,8 @@ std::function<double(int)> alternating(double first, double second) {
   return [=](int i) { return i % 2 == 0 ? first : second; };
 }
 
-/// Rods of 1 m on ball joints from the origin down; the inclination increases along the chain to `lean` (rad)
-/// at the last rod.
+/// Adds rods of 1 m on ball joints from the origin down. The inclination increases along the chain to `lean`
+/// (rad) at the last rod. mass(i): mass of rod i, kg.
 void chain(MultiBody& body, int links, double lean, const std::function<double(int)>& mass) {
   Vec3<double> from(0, 0, 0);
   const Part* before = nullptr;
@@ -160,7 +161,7 @@ void double_the_balls(MultiBody& body) {
   }
 }
 
-/// Returns the number of redundant rows of all joints.
+/// Returns the number of redundant rows (scalar constraint equations) of all joints.
 int redundant(const Simulation& simulation) {
   Workspace<double> work;
   const State& s = simulation.state();
@@ -169,6 +170,7 @@ int redundant(const Simulation& simulation) {
   return std::accumulate(rows.begin(), rows.end(), 0);
 }
 
+/// Returns the largest absolute value of the multipliers lambda of all joints. Requires that they are finite.
 double max_lambda(const Simulation& simulation) {
   Workspace<double> work;
   const State& s = simulation.state();
@@ -326,9 +328,9 @@ TEST_CASE("N43: a ring of 100 links in free flight for 10 s: energy and gaps", "
 
 namespace {
 
-/// A crank and an arm of equal length; the end of the arm slides on the x axis. They start at an angle from
-/// upright. When both are upright, with the end at the pivot, the mechanism can move in two ways: crank and
-/// arm together, or apart.
+/// Adds a crank and an arm of equal length; the end of the arm slides on the x axis. angle: initial angle of
+/// the crank from upright, rad. When crank and arm coincide, the end of the arm is at the pivot of the crank.
+/// Then the mechanism can move in two ways: crank and arm together, or apart.
 void equal_crank(MultiBody& body, double angle) {
   const Vec3<double> A(std::sin(angle), 0, std::cos(angle)), B(2 * std::sin(angle), 0, 0);
   Part& crank = rod(body, "crank", {0, 0, 0}, A, kY, 0.02);
@@ -338,7 +340,8 @@ void equal_crank(MultiBody& body, double angle) {
   body.join("line", "line", {end_of(arm), world(0, 0, 0), 0, kX, {}, {}});
 }
 
-/// An arm of two rods of 1 m from the origin to a moving anchor on the x axis.
+/// Adds an arm of two rods of 1 m from the origin to a moving anchor on the x axis. reach: initial distance
+/// of the anchor, m. anchor_x: its coordinate x, m.
 void arm(MultiBody& body, double reach, const TimeFunction& anchor_x) {
   const Vec3<double> elbow(reach / 2, 0, -std::sqrt(1 - reach * reach / 4));
   Part& upper = rod(body, "upper", {0, 0, 0}, elbow, kY, 0.02);
@@ -443,9 +446,8 @@ TEST_CASE("N44: an anchor that moves beyond the reach of an arm stops the run wh
 
 namespace {
 
-/// Checks that no gap exceeds 1e-10 body lengths during a run, for every method. For more than 100 parts, the
-/// methods that solve dense equations for all velocities are left out. length: length of a body, m. h: step,
-/// s.
+/// Checks that no gap exceeds 1e-10 body lengths during a run, for every method. For more than 100 parts,
+/// implicit_midpoint and esdirk are left out. length: length of a body, m. h: step, s.
 void check_gaps(const std::string& name, const std::function<void(MultiBody&)>& make, double length, double h,
                 int steps) {
   for (const IntegratorInfo& info : all_integrators()) {

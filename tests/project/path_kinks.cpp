@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kAnchors = static_cast<int>(Work::anchors);
 
-/// An ellipsoid with half axes 0.3, 0.1, 0.1 and its long axis along x. A ball joint holds the end of this
-/// axis at a moving anchor that starts at the origin.
+/// Adds an ellipsoid with semi-axes of 0.3, 0.1 and 0.1 m and its long axis along x. A ball joint connects
+/// one end of this axis with a moving anchor that starts at the origin.
 Part& driven_ellipsoid(MultiBody& body, const TimeVector& path) {
   Part& part = test::add(body, "held", "ellipsoid", {}, 1000);
   part.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}}).place({0.3, 0, 0});
@@ -26,8 +26,8 @@ Part& driven_ellipsoid(MultiBody& body, const TimeVector& path) {
   return part;
 }
 
-/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if the duration is
-/// positive (s, m/s, s).
+/// Returns a path along z that starts to move at the time `start` (s) with `speed` (m/s). If `duration` (s)
+/// is positive, the path stops after this time.
 TimeVector lift(double start, double speed, double duration = 0) {
   if (duration > 0) return {0, 0, TimeFunction::key_frames({start, start + duration}, {0, duration * speed})};
   std::ostringstream text;

@@ -1,4 +1,5 @@
-// Rigid parts on ball joints: their specialised evaluation and joint projection against the general ones.
+// Rigid parts on ball joints: their specialised evaluation and projection of joints agree with the general
+// ones.
 #include "catch.h"
 
 #include <pliant/body/constraint/rigid_island.h>
@@ -15,9 +16,9 @@ using test::Draws;
 
 namespace {
 
-/// Adds n frozen, tapered boxes whose centres of mass are not at their origins. Each hangs from an earlier
-/// one, the first from the world. If n > 1, a bar hangs from the last box. With loops > 0 the bar closes a
-/// loop to the world, and the first joint is doubled.
+/// Adds n frozen, tapered boxes whose centres of mass are not at their origins. The first box hangs from the
+/// world, each other box from an earlier box. A fixed post is not connected to them. If n > 1, a bar hangs
+/// from the last box. With loops > 0 the bar closes a loop to the world, and the first joint is doubled.
 void add_hanging_boxes(MultiBody& body, int n, int loops, std::uint64_t seed) {
   Draws draws(seed);
   auto random_point = [&](const Part& part) {
@@ -28,7 +29,7 @@ void add_hanging_boxes(MultiBody& body, int n, int loops, std::uint64_t seed) {
   };
   std::vector<Part*> parts;
   auto join_closed = [&](Part& part, const Part& to) {
-    // The point may be inside or outside the other part.
+    // The part is moved, so that its random point coincides with a random point of the other part.
     const Point a = random_point(part), b = random_point(to);
     part.place(part.c0() + position(to, b) - position(part, a), part.R0());
     body.ball("joint" + std::to_string(body.joints().size()), a, b);

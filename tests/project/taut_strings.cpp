@@ -22,8 +22,8 @@ Part& ball(MultiBody& body, const char* name, const Vec3<double>& at) {
 Point centre(Part& part) {
   return point(part, 0, 0, 0);
 }
-/// Returns the impulse (N s) that the first joint of a body receives in the step of the first impact; NaN if
-/// there is no impact.
+/// Returns the impulse (N s) on the first joint of the model in the step of the first impact; NaN if there is
+/// no impact within 1 s.
 double impulse_of_impact(Simulation& simulation) {
   for (int i = 0; i < 1000; ++i) {
     simulation.step(1e-3);
@@ -70,8 +70,8 @@ TEST_CASE("a slack string receives no impulse from an impact", "[contact][joints
 
 TEST_CASE("a taut string with a moving anchor transmits the anchor's speed in an impact",
           "[contact][joints]") {
-  // The anchor and the ball that it pulls rise at 1 m/s; the ball that they hit from below starts to rise at
-  // that speed.
+  // The anchor and the pulled ball rise at 1 m/s. The pulled ball hits another ball from below, which then
+  // rises at this speed.
   MultiBody body;
   body.contact.active = true;
   body.gravity.setZero();

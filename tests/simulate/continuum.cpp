@@ -16,7 +16,8 @@ using namespace pliant;
 
 namespace {
 
-/// A tumbling solid whose only stiffness is that of its material, with all kinds of parameters dynamic.
+/// Adds a tumbling solid whose only stiffness is that of its material, with all kinds of parameters dynamic,
+/// and sets gravity to zero. law: name of the material law; beta: damping, s.
 Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
   body.gravity.setZero();
   Part& part = test::add(body, "rubber", "ellipsoid", {"taper", "twist", "shear", "bend"}, 1000);
@@ -31,6 +32,9 @@ Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
   return part;
 }
 
+/// Absolute values of the changes in a run, relative to the values at the start: of the balance of the
+/// ledger, of P and of L. dissipated: work of damping, positive if energy is lost, relative to the energy at
+/// the start.
 struct Drift {
   double balance, momentum, angular, dissipated;
 };
@@ -222,8 +226,8 @@ TEST_CASE("the strain of frozen parameters is not evaluated, and semi-axes alone
 }
 
 TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assembly]") {
-  // A rubber ball between two points that are farther apart than its diameter: its material acts as a
-  // massless spring between the joints.
+  // A rubber ball is joined to two points that are farther apart than its diameter. In the assembly its
+  // material acts as a massless spring between the joints.
   MultiBody body;
   body.gravity.setZero();
   body.stabilization.assemble_first = true;
@@ -235,7 +239,7 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
   const VecX<double> q = simulation.state().q.tail(3);
   CHECK(q[0] == Approx(1.3).epsilon(1e-9));
   CHECK(q[1] == Approx(q[2]).epsilon(1e-6));
-  // There is no transverse stress: dE/da2 = 0 at this stretch.
+  // There is no transverse stress: the derivative of the elastic energy with respect to a2 is zero.
   VecX<double> f = VecX<double>::Zero(3);
   Counters unused;
   ball.continuum()->add_force(ball, VecMax<double>(q), VecMax<double>(VecMax<double>::Zero(3)), 0, f, unused);
@@ -246,9 +250,9 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
 TEST_CASE("with a mesh of the same material, frequencies of the semi-axes converge to those of Lamb",
           "[continuum][motion][long]") {
   // The mode S2 and the breathing mode of a free solid sphere, nu_P = 0.25 (Lamb 1882). The exact values of
-  // omega a / c_s (a: radius, c_s: speed of shear waves) are 2.63987 and 4.44000; three semi-axes alone
-  // give 3.1623 and 5.0. The initial values of the semi-axes excite the mode; if they are frozen, the
-  // displacements of the nodes do.
+  // omega a / c_s (a: radius, c_s: speed of shear waves) are 2.63987 and 4.44000; three semi-axes alone give
+  // 3.1623 and 5.0. The initial values of the semi-axes excite the mode. If the semi-axes are frozen, the
+  // initial displacements of the nodes excite it.
   const double exact[2] = {2.63987, 4.44000}, scales[2] = {std::sqrt(10.0), 5.0};
   auto eta = [](const std::string& law, int mode, int resolution, bool dynamic) {
     MultiBody body;
@@ -274,7 +278,7 @@ TEST_CASE("with a mesh of the same material, frequencies of the semi-axes conver
       ball.deform_locally(settings);
     }
     Simulation simulation(body, "rk4");
-    // The mean strain, from the nodes or from the shape.
+    // Returns a measure of the strain in the mode, from the nodes, or from the semi-axes without a mesh.
     auto strain = [&](const State& state) {
       if (resolution == 0) return direction.dot(state.q.segment<3>(7) - Vec3<double>::Ones());
       const Nodes x = simulation.model().node_positions(state, 0), &X = ball.local()->mesh().X;

@@ -17,7 +17,7 @@ namespace {
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns `value` until time `when`, then `what`, which is not finite.
+/// Returns a function of time: `value` before the time `when` (s), then `what`, which is not finite.
 TimeFunction broken_at(double when, double value, double what) {
   struct Broken : TimeFunction::Impl {
     double when, value, what;
@@ -167,7 +167,7 @@ TEST_CASE("parameters without inertia are fixed and named", "[failure]") {
     CHECK(simulation.state().q.allFinite());
     CHECK(simulation.state().v.allFinite());
     CHECK(simulation.ledger().energy() >= 0);
-    // Other motion is not disturbed: a1 keeps its rate.
+    // The other motion does not change: a1 keeps its rate.
     CHECK(simulation.state().v[6] == Approx(0.1).epsilon(1e-2));
     test::run(simulation, 0.1, 100);
     CHECK(simulation.state().q.allFinite());

@@ -1,5 +1,5 @@
-// Tests of changes that must not affect a motion: units, orientation, order of parts, unrelated parts,
-// threads, queries, resuming, features with zero effect.
+// Changes that must not affect a motion: other units, rotations and reflections of the scene, the order of
+// parts, unrelated parts, the number of threads, queries, a resumed run, features with zero effect.
 #include "catch.h"
 
 #include <cmath>
@@ -87,9 +87,9 @@ TEST_CASE("N62: units that differ by powers of two give identical bits after sca
 
 namespace {
 
-/// Runs a scene with a deformable part a, a box b and springs, rotated as a whole. Returns q and v of a and
-/// b. reversed: adds the parts in reverse order. others: adds a third part c, which nothing connects to a and
-/// b.
+/// Runs a scene with a deformable part a, a box b and springs; `rotation` rotates the whole scene. Returns q
+/// and v of a and b. reversed: whether the parts are added in reverse order. others: whether a third part c
+/// is added, which nothing connects to a and b.
 Result run_rotated(const Eigen::Quaterniond& rotation, const char* method, bool reversed = false,
                    bool others = false) {
   MultiBody body;
@@ -176,7 +176,7 @@ TEST_CASE("N64: the order of parts and unrelated parts do not change the motion"
 
 TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]") {
   // The reflection x -> -x changes the signs of c.x, of the twist, of the shear along x, of two components of
-  // omega and of two components of the quaternion. A direction of the bend becomes pi minus the direction.
+  // omega and of two components of the quaternion. The direction phi of the bend becomes pi - phi.
   for (const char* method : kMethods) {
     Result results[2];
     for (int mirrored = 0; mirrored < 2; ++mirrored) {

@@ -1,5 +1,5 @@
-// Parts with prescribed motion: joints, springs and contacts with them, against moving anchors and closed
-// forms.
+// Joints, springs and contacts with parts that have prescribed motion. The results are compared with those of
+// moving anchors and with closed forms.
 #include "catch.h"
 
 #include <cmath>
@@ -36,7 +36,8 @@ double work(Simulation& simulation, Work kind) {
 }  // namespace
 
 TEST_CASE("a load on a part with prescribed motion moves as on the equivalent moving anchor", "[motion]") {
-  // The anchor is 0.1 m from the origin of a frame that translates and rotates periodically.
+  // The anchor is 0.1 m from the origin of a frame that translates and rotates periodically. In the second
+  // model this frame is the frame of a part.
   const TimeFunction x = wave(0, 0.2, 7), angle = wave(0.3, 1.5, 3);
   const TimeVector anchor(TimeFunction::formula("0.2 * sin(7 * t) + 0.1 * cos(0.3 + 1.5 * sin(3 * t))"),
                           TimeFunction::formula("0.1 * sin(0.3 + 1.5 * sin(3 * t))"), 1);

@@ -1,4 +1,4 @@
-// Quantities that a scene does not need are not computed, as the counters of the kernels show; and a step
+// Quantities that a scene does not need are not computed, as the counters of the kernels show. A step
 // allocates no heap memory.
 #include "catch.h"
 
@@ -18,7 +18,7 @@ namespace {
 long allocations = 0;
 }  // namespace
 
-// Sanitizers replace malloc, so that nothing can be counted there.
+// Sanitizers replace malloc, so that allocations cannot be counted with them.
 #if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 constexpr bool kCounted = true;
 extern "C" void* __libc_malloc(std::size_t size);
@@ -45,7 +45,8 @@ Counters after_steps(Simulation& simulation, int steps) {
   return simulation.counters();
 }
 
-/// Checks that steps allocate no memory after the first two have sized all buffers.
+/// Checks that ten steps of h (s) allocate no heap memory, after two steps in which all buffers receive their
+/// sizes.
 void check_heap(Simulation& simulation, double h) {
   simulation.step(h);
   simulation.step(h);
@@ -245,7 +246,7 @@ TEST_CASE("reference conditions that are satisfied need no further evaluation af
       const double steps = 1000, masses = static_cast<double>(after_steps(simulation, 1000).mass_matrices),
                    evaluations = static_cast<double>(simulation.step_counters().evaluations);
       if (soft)
-        CHECK(masses >= evaluations + steps);  // W depends on the parameters
+        CHECK(masses >= evaluations + steps);  // the reference conditions depend on the parameters
       else
         CHECK(masses <= evaluations + 0.02 * steps);
     }

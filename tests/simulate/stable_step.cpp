@@ -1,4 +1,4 @@
-// The predicted largest stable step against the measured one.
+// The predicted largest stable step is compared with the measured one.
 #include "catch.h"
 
 #include <chrono>
@@ -16,7 +16,8 @@ namespace {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// Returns whether the motion about the initial state stays bounded in steps of h.
+/// Returns whether the motion about the initial state stays bounded in 3000 steps of h (s): no step fails,
+/// and the norm of v grows by less than a factor of 1000.
 bool bounded(const Build& build, const char* method, double h) {
   MultiBody body;
   body.gravity.setZero();
@@ -46,15 +47,15 @@ void check_limit(const std::string& what, const Build& build) {
   }
 }
 
-/// A solid with one elastic semi-axis, damped by alpha and beta. The motion is so small that the semi-axis
-/// does not reach its limits.
+/// Returns a function that adds a solid with one elastic semi-axis. stiffness: N/m; alpha: 1/s; beta: s;
+/// drag: 1/s. The motion is so small that the semi-axis does not reach its limits.
 Build breathing(double stiffness, double alpha, double beta, double drag = 0) {
   return [=](MultiBody& body) {
     auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
     part.mass(5).stiffness({{"a3", stiffness}}).initial_rate({{"a3", 1e-9}}).damping(alpha, beta, drag);
   };
 }
-/// A ball on a spring and damper at its centre.
+/// Returns a function that adds a ball on a spring and damper at its centre. stiffness: N/m; damping: N s/m.
 Build ball(double stiffness, double damping) {
   return [=](MultiBody& body) {
     auto& part = body.add<Primitive<Sphere>>("ball", 1000);
@@ -162,8 +163,8 @@ TEST_CASE("N19: a spin limits the step to half a radian", "[stable]") {
   CHECK(message.find("the largest stable step here is about") != std::string::npos);
 }
 
-/// A chain of n small balls on rods of 1 m, which hangs in a gravity of 1 m/s^2. The last ball starts with a
-/// horizontal velocity, m/s.
+/// Adds a hanging chain of n small balls on rods of 1 m, and sets gravity to 1 m/s^2. velocity: initial
+/// horizontal velocity of the last ball, m/s.
 void hanging_chain(MultiBody& body, int n, double velocity = 0) {
   body.gravity = {0, 0, -1};
   const Part* above = nullptr;
@@ -189,7 +190,7 @@ TEST_CASE(
     CHECK(largest_stable_step(Simulation(body, "semi_implicit_euler")) ==
           Approx(2 / std::sqrt(root)).epsilon(1e-3));
   }
-  // An unstable equilibrium has no limit of its own; the pendulums beside it have one.
+  // A pendulum in its unstable equilibrium does not limit the step. The hanging chain beside it does.
   MultiBody body;
   hanging_chain(body, 2);
   auto& top = body.add<Primitive<Sphere>>("top", 1000);
@@ -253,7 +254,8 @@ TEST_CASE("long chains: the bound from single parts is safe and fast", "[stable]
     }
     return largest_stable_step(Simulation(body));
   };
-  const double together = chain(20), one_by_one = chain(21);  // up to 120 velocities are analysed together
+  const double together = chain(20),
+               one_by_one = chain(21);  // up to 120 velocities (20 balls) are analysed together
   CHECK(one_by_one <= together);
   CHECK(one_by_one >= 0.5 * together);
   const auto start = std::chrono::steady_clock::now();

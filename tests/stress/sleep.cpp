@@ -1,6 +1,6 @@
 // Events other than impacts and forces that wake sleeping bodies: prescribed motion of a part or of the end
-// of a string, planes that appear, and plates that appear or disappear. Prescribed motion that does not touch
-// or pull a sleeping body does not wake it.
+// of a string, planes that appear, and plates that appear or disappear. Prescribed motion elsewhere does not
+// wake a sleeping body.
 #include "catch.h"
 
 #include <algorithm>
