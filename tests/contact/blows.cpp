@@ -79,6 +79,8 @@ void add_point(const Model& model, const State& state, const ContactSide& side, 
   L.middleCols(m.v0 + 6, m.n_s) += sign * R * jets[0].J;
 }
 
+/// Builds a model without gravity, runs it to its first impact, and returns the impact. Requires that the
+/// impact occurs within 1 s and has a single contact.
 Impact first_impact(const Build& build) {
   MultiBody body, other;
   for (MultiBody* each : {&body, &other}) {
@@ -117,7 +119,7 @@ Impact first_impact(const Build& build) {
   return impact;
 }
 
-/// The kinds of parts that `soft` adds. All have dynamic parameters.
+/// Kinds of parts that soft() adds. Each has three dynamic parameters.
 const std::vector<std::string> kKinds{"sizes", "bent", "squarish", "twisted"};
 Part& soft(MultiBody& body, const std::string& name, const std::string& kind, double density = 1000) {
   if (kind == "sizes") {

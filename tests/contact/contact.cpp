@@ -486,7 +486,7 @@ TEST_CASE("the most specific rule for a pair applies, and of equally specific ru
   };
   is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts takes precedence over pairs of groups
   is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group take precedence over two groups
-  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects them, and no pair names both parts
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects b and c, and no pair names both
   is(rules.of_parts(2, 3), false, 0.1, 0.2);
   is(rules.of_parts(0, 3), true, 0.1, 0.2);
   is(rules.on_plane(0, 0), true, 0, 1);

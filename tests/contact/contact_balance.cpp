@@ -197,11 +197,11 @@ TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error
 }
 
 TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no energy", "[contact]") {
-  // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. s =
-  // sin(angle), c = cos(angle), m: mass of the rod, v: speed of the tip. If 3 mu s c > 1 + 3 c^2, no motion
-  // with finite forces obeys Coulomb's law; if the rod also rotates away from the floor, more than one motion
-  // does. The solution is an impulse without a collision, which stops the tip at once. Its components along
-  // and normal to the floor are m v (1 + 3 c^2) / 4 and 3 m v s c / 4.
+  // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. The mass of
+  // the rod is m, the speed of the tip v, and s and c are the sine and cosine of the angle. If 3 mu s c > 1 +
+  // 3 c^2, no motion with finite forces obeys Coulomb's law; if the rod also rotates away from the floor,
+  // more than one motion does. The solution is an impulse without a collision, which stops the tip at once.
+  // Its components along and normal to the floor are m v (1 + 3 c^2) / 4 and 3 m v s c / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})

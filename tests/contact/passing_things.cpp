@@ -26,8 +26,8 @@ void make_soft(Part& part) {
   part.deform_locally(settings);
 }
 
-/// A ball that would reach a plane after 0.5 s and rebound elastically. The plane is active from `on` to
-/// `off` (s).
+/// Adds a plane, and a ball that reaches the plane after 0.5 s. If the plane is active at this time, the ball
+/// rebounds elastically. The plane is active from `on` to `off` (s).
 void ball_before_plane(MultiBody& body, double on, double off) {
   body.gravity.setZero();
   ball(body, 0.1, {0, 0, 0.6}).velocity({0, 0, -1}, {0, 0, 0});

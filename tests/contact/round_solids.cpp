@@ -220,9 +220,9 @@ TEST_CASE("standing cylinders, flat tori and lying cylinders along their axis st
 }
 
 TEST_CASE("cylinders, capsules and tori roll down a slope by the closed form", "[contact]") {
-  // a = g sin(angle) / (1 + I / (m r^2)), with the radius r of rolling and the moment of inertia I. Sample
-  // points represent the rim of a cylinder and the side of a capsule. Rolling from one sample point to the
-  // next dissipates some speed: a thousandth in the whole run.
+  // a = g sin(angle) / (1 + I / (m r^2)), with the distance r of the centre from the slope and the moment of
+  // inertia I. Sample points represent the rim of a cylinder and the side of a capsule. Rolling from one
+  // sample point to the next dissipates some speed: a thousandth in the whole run.
   const double angle = 0.3, tube = 0.05, ring = 0.15, r = 0.1, l = 0.3;
   const double side = l, caps = 4.0 / 3 * r;  // volumes of the cylinder and of both caps, divided by pi r^2
   struct Case {

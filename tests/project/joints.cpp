@@ -443,7 +443,9 @@ TEST_CASE("N35: a spinning rod, by Baumgarte terms alone and with projection", "
   struct Case {
     const char* name;
     Stabilization gains;
-    double offset;  // gap (m) for a bias of 1 m/s^2: h alpha / beta^2
+    /// Steady gap (m) for a bias of 1 m/s^2; the bias is the acceleration of the gap without joint forces.
+    /// The offset is h alpha / beta^2 for constant gains alpha and beta.
+    double offset;
   };
   auto gains = [](BaumgarteRule rule, double rate) {
     Stabilization made;

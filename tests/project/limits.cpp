@@ -1,5 +1,5 @@
-// Limits of parameters as one-sided constraints: a parameter never passes its limit, can rest at it and leave
-// it again, and the ledger records the work.
+// Limits of parameters as one-sided constraints. A parameter never passes a limit; it can rest at the limit
+// and leave the limit again. The ledger records the work of limits.
 #include "catch.h"
 
 #include "motion.h"

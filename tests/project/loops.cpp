@@ -198,7 +198,7 @@ MaxErrors max_errors(Simulation& simulation, double end, int steps) {
 }  // namespace
 
 TEST_CASE("IFToMM A01: a point pendulum released horizontally keeps its period and its energy", "[loops]") {
-  // T = 4 sqrt(l / g) K(sin^2(45 degrees)).
+  // The period is 4 sqrt(l / g) K(sin^2(45 degrees)), with the complete elliptic integral K(m).
   const double period = 2.367841947576;
   MultiBody body;
   Part& mass = test::add(body, "mass", "sphere", {}, 1000);

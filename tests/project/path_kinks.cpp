@@ -1,4 +1,4 @@
-// Moving anchors whose velocity jumps: the impulse of the jump, and its work.
+// Moving anchors whose velocity jumps, because the path has a kink: the impulse of the jump, and its work.
 #include "catch.h"
 
 #include <sstream>

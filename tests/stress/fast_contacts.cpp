@@ -133,7 +133,7 @@ ShotResults shoot(const std::string& kind, const std::string& at, int shots, dou
       const Vec3<double> along = shot.velocity.normalized(), x = mean_position(simulation, 0);
       passed = x[2] < 0;
       if (pair && hit) {
-        // A deflected part may overtake the other part in the rest of the step, but only beside it.
+        // A deflected part may overtake the other part in the rest of the step, but only at its side.
         const Vec3<double> d = x - mean_position(simulation, 1);
         const double ahead = d.dot(along);
         passed = ahead > 0 && (d - ahead * along).norm() < 0.04;

@@ -74,7 +74,8 @@ double resident_memory() {
   std::ifstream("/proc/self/statm") >> all >> resident;
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
-/// Returns the allocated heap memory, bytes. Unlike the resident memory it does not depend on fragmentation.
+/// Returns the allocated heap memory, bytes. Unlike the resident memory, the allocated memory does not depend
+/// on fragmentation.
 double heap_memory() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);

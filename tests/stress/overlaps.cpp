@@ -1,5 +1,5 @@
-// Parts that start inside other parts, planes and heaps: they are separated at a bounded speed, and the
-// ledger records the energy that the separation adds.
+// Parts that start inside other parts or inside a floor are separated at a bounded speed. The ledger records
+// the energy that the separation adds.
 #include "catch.h"
 
 #include <algorithm>
@@ -93,8 +93,8 @@ Part& ball(MultiBody& body, const std::string& name, const std::string& kind, co
 /// Results of the separation of two parts of ball().
 struct Separation {
   double first_overlap = 0;  // overlap at the start, m
-  double fastest = 0;   // largest relative speed of their centres while they overlap by more than 0.2 kSize,
-                        // in sizes a second
+  double fastest = 0;   // largest relative speed of the centres while the overlap is more than 0.2 kSize, in
+                        // sizes a second
   double distance = 0;  // distance of the centres at the end, m
   double overlap = 0;   // overlap at the end, m
   double added = 0;     // change of the energy in the run, J
@@ -193,8 +193,8 @@ TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest fa
 }
 
 TEST_CASE("N54: parts with local deformation are separated as wholes, from any depth", "[contact][long]") {
-  // The last remainder of the overlap is separated node by node, which dents the parts slightly. Only these
-  // dents need work.
+  // The final, small overlap is separated node by node, which dents the parts slightly. Only these dents need
+  // work.
   struct Case {
     const char *one, *other, *method;
     double h, max_work;  // step, s; largest permitted work of contact, J
