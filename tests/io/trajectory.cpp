@@ -149,12 +149,10 @@ TEST_CASE("a joint's force is the one on its first side, in the world frame, and
         REQUIRE(number("joint.swing.gap") <= 1e-12);
         // The joint force on the swinging sphere is m (c_ddot - g): c_ddot is the acceleration of its centre,
         // g the gravity vector. along, across: unit vectors from the joint to the centre, and in the
-        // direction of the swing.
+        // direction of the swing; I = 7/5 m r^2: moment of inertia about the joint.
         const Vec3<double> along = (simulation.state().q.segment<3>(7) - Vec3<double>(2, 0, 0)) / r,
                            across(along[2], 0, -along[0]);
-        const double inertia = 1.4 * r,
-                     acceleration =
-                         across[2] * -g / inertia,  // moment of inertia about the joint 7/5 m r^2, over m r
+        const double inertia = 1.4 * r, acceleration = across[2] * -g / inertia,  // I / (m r)
             rate = simulation.state().v.segment<3>(6).squaredNorm() / r;
         const Vec3<double> needed = mass * (r * acceleration * across - rate * along + Vec3<double>(0, 0, g));
         REQUIRE((force("joint.swing") - sign * needed).norm() <= 1e-10 * mass * g);
