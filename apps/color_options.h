@@ -18,11 +18,11 @@ struct ColorOptions {
 void add_color_options(CLI::App& command, ColorOptions& options);
 /// Declares --color-by only, for commands whose files contain the values and not their colours.
 void add_color_by(CLI::App& command, ColorOptions& options);
-/// Throws CLI::ValidationError if the range is not increasing.
+/// Throws CLI::ValidationError unless the range is empty, or increasing with a finite difference.
 void check_colors(const ColorOptions& options);
 /// Sets the colouring of a scene by the options. Without --color-by, the scene does not change. "part"
-/// removes the colouring. A quantity other than that of the scene also removes the range of values of the
-/// scene.
+/// removes the colouring. A quantity other than that of the scene removes the range of the scene, and keeps
+/// the list of coloured parts. --color-range then sets the range.
 void apply_colors(const ColorOptions& options, pliant::Scene& scene);
 
 }  // namespace pliant_cli

@@ -1,5 +1,5 @@
-// The commands of the program. Each function declares a command and its options. After parsing, the selected
-// command sets the action.
+// The commands of the program. Each function declares a command and its options. When the command line is
+// parsed, the selected command sets the action.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace pliant_cli {
 /// reports.
 using Action = std::function<int()>;
 
-/// command_line: the words of the command line; the run records them in run.json.
+/// command_line: the words of the command line, which the run writes to run.json.
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line);
 void add_check(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

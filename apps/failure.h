@@ -13,12 +13,12 @@ class ResourceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs a task and returns its exit code. If the task throws, reports the exception and returns the exit code
-/// for this exception.
+/// Runs a task and returns its exit code. If the task throws an exception, prints the message on standard
+/// error and returns the exit code for this exception (exit_codes.h).
 int reporting_failures(const std::function<int()>& task);
 
-/// Reports a command line that could not be parsed and returns kCommandLine (exit_codes.h). If the command
-/// line asks for help or the version, prints the answer on standard output and returns kDone.
+/// Prints on standard error why a command line cannot be parsed, and returns kCommandLine (exit_codes.h). If
+/// the command line asks for help or the version, prints the answer on standard output and returns kDone.
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pliant_cli

@@ -1,5 +1,5 @@
-// Validators of option values. A validator accepts a value only if its whole text is valid. The result does
-// not depend on the locale.
+// Validators of option values, and parsers of sizes and frames. A validator accepts a text only if all of it
+// is valid. The locale has no influence.
 #pragma once
 
 #include <string>
@@ -36,7 +36,8 @@ struct FrameOptions {
 };
 /// Declares --frames and --shard.
 void add_frame_options(CLI::App& command, FrameOptions& options);
-/// Returns the selection of frames. Throws std::invalid_argument if one of the texts is not valid.
+/// Returns the frames that both options select. Throws std::invalid_argument if one of the texts is not
+/// valid.
 pliant::FrameRange parse_frames(const FrameOptions& options);
 
 }  // namespace pliant_cli

@@ -1,4 +1,4 @@
-// The options that select a scene: its file, and values set on the command line.
+// The options that select a scene: the scene file, and values of the scene set on the command line.
 #pragma once
 
 #include <memory>
@@ -18,12 +18,12 @@ struct SceneOptions {
 
 /// Declares the argument SCENE and the option --set.
 void add_scene_options(CLI::App& command, SceneOptions& options);
-/// Reads the scene and prints its warnings on standard error. Throws pliant::SceneError and
-/// pliant::FileError.
+/// Reads the scene and prints its warnings on standard error. Throws pliant::SceneError if the scene has a
+/// fault, and pliant::FileError if a file cannot be read.
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options);
 
-/// Returns the solver of the joint equations: with CHOLMOD and its order of blocks if SuiteSparse is linked
-/// into this program, otherwise with Eigen.
+/// Returns the solver of the joint equations. If SuiteSparse is linked into this program, the solver uses
+/// CHOLMOD as factorisation and AMD for the order of the blocks, otherwise Eigen.
 pliant::JointSolver solvers();
 
 }  // namespace pliant_cli

@@ -1,5 +1,5 @@
-// Progress on standard error. A terminal shows a bar. Otherwise a line is written at the end of each stage
-// and once a minute, and also at each tenth of a stage after its first 2 s. If quiet, nothing is written.
+// Progress on standard error. A terminal shows a bar. Otherwise a line is written at the end of each stage,
+// once a minute, and at each tenth of a stage that has taken more than 2 s.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,9 @@
 
 namespace pliant_cli {
 
-/// Returns a progress display. quiet: the display shows nothing, and no notes. advance() of the display
-/// throws pliant::Interrupted after a stop signal, except in the stage "simulate". This stage ends by itself
-/// after the current step.
+/// Returns a progress display. quiet: the display shows neither progress nor notes. advance() of the display
+/// throws pliant::Interrupted after a stop signal, except in the stage "simulate", which ends after the
+/// current step without this exception.
 std::unique_ptr<pliant::Progress> make_progress(bool quiet);
 
 }  // namespace pliant_cli

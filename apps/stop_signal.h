@@ -4,8 +4,8 @@
 
 namespace pliant_cli {
 
-/// Starts to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU. Ignores SIGPIPE and SIGXFSZ from now on: a failed
-/// write is reported by the function that writes.
+/// Starts to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU. From now on, SIGPIPE and SIGXFSZ are ignored: the
+/// function that writes then reports the failed write.
 void catch_stop_signals();
 /// Returns the number of the first caught signal, or 0 if no signal was caught.
 int stop_signal();

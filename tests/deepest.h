@@ -1,4 +1,4 @@
-// The deepest overlap of parts with each other, with planes and with obstacles.
+// The deepest overlap at the current state of a simulation.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 
 namespace pliant::test {
 
-/// Returns the deepest overlap that the contact search reports, m, or 0 if nothing overlaps. The model of the
-/// simulation must have contact.
+/// Returns the deepest overlap (m) of parts with other parts, planes and obstacles, or 0 if nothing overlaps.
+/// Contact must be active in the simulation.
 inline double deepest_overlap(const Simulation& simulation) {
   double deep = 0;
   for (const Contact& contact : simulation.contact()->overlaps(simulation.state(), simulation.time()))
     deep = std::max(deep, -contact.gap);
   return deep;
 }
-/// Returns the deepest overlap of the surface meshes of parts with local deformation, m, or 0 if nothing
-/// overlaps.
+/// Returns the deepest overlap (m) of parts that deform locally with planes and with other parts, or 0 if
+/// nothing overlaps. Overlaps with obstacles are not included.
 inline double deepest(const Simulation& simulation) {
   std::vector<Contact> found;
   MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);

@@ -5,7 +5,8 @@
 
 namespace pliant::test {
 
-/// Returns df/dt at t = 0. f: function of t, whose values can be added and multiplied by a number. h: step.
+/// Returns df/dt at t = 0. f: function of t (long double), whose values can be added, subtracted and
+/// multiplied by a number; h: step of t.
 template <class F>
 auto first_derivative(F&& f, long double h) {
   using V = decltype(f(h));

@@ -1,5 +1,4 @@
-// Pseudorandom numbers for tests, identical on every machine: parameters within their ranges, and material
-// points.
+// Pseudorandom numbers, parameter values and material points for tests. They are identical on every machine.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +15,7 @@ class Draws {
  public:
   explicit Draws(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 0x1234567u) {}
 
+  /// Returns a number from `from` (included) to `to`.
   double uniform(double from, double to) {
     state_ ^= state_ << 13;
     state_ ^= state_ >> 7;
@@ -31,9 +31,9 @@ class Draws {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }
 
-  /// Returns a value of a parameter. If its dynamic range is relative to the rest value, the result is 0.6 to
-  /// 1.7 times the default. Otherwise the result is in the dynamic range and differs by at most 3 from the
-  /// default.
+  /// Returns a value of a parameter. If the dynamic range of the parameter is relative to its rest value, the
+  /// result is 0.6 to 1.7 times the default. Otherwise the result is in the dynamic range and differs by at
+  /// most 3 from the default.
   double parameter(const ParameterSpec& spec) {
     if (spec.relative) return spec.standard * uniform(0.6, 1.7);
     return uniform(std::max(spec.dynamic.min, spec.standard - 3),
@@ -50,8 +50,8 @@ class Draws {
   std::uint64_t state_;
 };
 
-/// Returns material points at all combinations of multiples of pi / 4 of u and v (poles, seams and ends of
-/// quadrature panels), for w = 0, 0.5 and 1.
+/// Returns all material points (u, v, w) whose u and v are multiples of pi / 4, for w = 0, 0.5 and 1. They
+/// include poles, seams and ends of quadrature panels.
 inline std::vector<Material<double>> special_points(MeshPattern pattern) {
   std::vector<Material<double>> all;
   const int tall = pattern == MeshPattern::torus ? 4 : 2;

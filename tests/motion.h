@@ -1,4 +1,4 @@
-// Runs of simulations, functions of time with exact derivatives, and models, for the tests of motion.
+// Helpers for the tests of motion: runs of simulations, functions of time with exact derivatives, models.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace pliant::test {
 
-/// Advances a simulation by the time `end` (s) in equal steps.
+/// Advances a simulation by `end` seconds in `steps` equal steps.
 inline void run(Simulation& simulation, double end, int steps) {
   for (int i = 0; i < steps; ++i) simulation.step(end / steps);
 }
 
-/// Returns mean + amplitude sin(rate t + phase).
+/// Returns the function mean + amplitude sin(rate t + phase) of the time t (s). rate: rad/s; phase: rad.
 inline TimeFunction wave(double mean, double amplitude, double rate, double phase = 0) {
   struct Wave : TimeFunction::Impl {
     double mean, amplitude, rate, phase;
@@ -61,14 +61,14 @@ inline double elliptic_K(double theta) {
   return kPi / (2 * a);
 }
 
-/// Adds a part. shape: name of its shape; chain: names of its deformations; density: kg/m^3.
+/// Adds a part and returns it. shape: name of its shape; chain: names of its deformations; density: kg/m^3.
 inline Part& add(MultiBody& body, const std::string& name, const std::string& shape,
                  const std::vector<std::string>& chain, double density) {
   return body.add(make_part(name, shape, chain, density));
 }
 
-/// Adds a solid whose parameters are all dynamic, with stiffness: semi-axes, taper, twist, shear and bend.
-/// Sets the gravity of the MultiBody to zero.
+/// Adds a moving ellipsoid with taper, twist, shear and bend, and returns this part. All of its parameters
+/// are dynamic and have a stiffness. Sets the gravity of the MultiBody to zero.
 inline Part& tumbling_solid(MultiBody& body, const std::string& name = "solid") {
   body.gravity.setZero();
   Part& part = add(body, name, "ellipsoid", {"taper", "twist", "shear", "bend"}, 1000);

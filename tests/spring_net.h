@@ -48,6 +48,7 @@ class Net final : public NodalEnergy {
   double k_;
 };
 
+/// Returns settings of local deformation with the energy Net. resolution: of the mesh; k: stiffness, N/m.
 inline LocalSettings net(int resolution, double k) {
   LocalSettings settings;
   settings.resolution = resolution;
@@ -55,7 +56,8 @@ inline LocalSettings net(int resolution, double k) {
   return settings;
 }
 
-/// Smooth displacements (m) and velocities (m/s) of nodes, as functions of their rest positions X (m).
+/// Return the displacement (m) and the velocity (m/s) of a node with the rest position X (m). Both functions
+/// are smooth.
 inline Vec3<double> sample_displacement(const Vec3<double>& X) {
   return 0.03 * Vec3<double>(std::sin(3 * X[0] + X[1]), std::cos(2 * X[2]) * X[0], X[1] * X[2] + 0.2);
 }

@@ -7,7 +7,7 @@
 
 namespace pliant::test {
 
-/// Returns the widest gap of all joints, m, or 0 without joints.
+/// Returns the widest gap of all joints, m; 0 if there are no joints.
 inline double widest_gap(const Simulation& simulation) {
   double widest = 0;
   for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)

@@ -1,4 +1,5 @@
-// The largest of many errors. An error that is not a number becomes infinite, so that a check fails.
+// The largest of the noted errors, 0 without errors. An error that is not a number counts as infinite, so
+// that a check of the largest error fails.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// The program as a user runs it: exit codes, messages, files in folders, and signals.
+// The program `pliant` as a separate process: exit codes, messages, files in folders, and signals.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -40,7 +40,8 @@ struct TestFolder {
   NewFolder folder;
   TestFolder() { set_bytes(folder / "top.json", kTop); }
 
-  // Runs the program in a shell and returns its exit code and output. before: text in front of the program.
+  // Runs the program in a shell and returns its exit code and output. before: text of the shell command in
+  // front of the program, for example settings of environment variables.
   Result pliant(const std::string& arguments, const std::string& before = "") const {
     const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
                              arguments + " > .out 2> .err";
@@ -84,6 +85,7 @@ pid_t start_long_run(const TestFolder& place, const std::string& run) {
   return child;
 }
 
+// Waits for the end of a process. Returns its exit code, or minus the number of the signal that ended it.
 int exit_code_of(pid_t child) {
   int status = 0;
   ::waitpid(child, &status, 0);
@@ -166,7 +168,8 @@ TEST_CASE("info reports joints: rows, rank, islands, and the size of the factor"
     CHECK(result.err.empty());
     return result.out;
   };
-  // Four hinges in a loop: blocks of 5 rows, four on the diagonal and three below it, without fill-in.
+  // Four hinges in a loop. The factor has blocks of 5 x 5 numbers: four on the diagonal and three below the
+  // diagonal, without fill-in.
   const std::string scenes = PLIANT_SCENES;
   const std::string linkage = info("'" + scenes + "/four_bar.json'");
   CHECK(has(linkage,
@@ -176,7 +179,7 @@ TEST_CASE("info reports joints: rows, rank, islands, and the size of the factor"
   const std::string augmented = info("'" + scenes + "/four_bar.json' --set /time/solver=augmented");
   CHECK(has(augmented, "constraints: 20 rows of rank 17, 1 island, 1 solved with the augmented matrix, "));
   CHECK(has(info("'" + scenes + "/n_four_bar.json'"), "constraints: 35 rows of rank 29, 1 island, "));
-  // A pendulum and a double pendulum: two islands.
+  // A pendulum and a double pendulum are two islands.
   set_bytes(place.folder / "two.json", R"({
     "parts": [{"name": "a", "shape": "sphere", "position": [0, 0, -1]},
               {"name": "b", "shape": "sphere", "position": [5, 0, -1]},
@@ -329,9 +332,10 @@ TEST_CASE("options for colouring by values must be complete and valid") {
   CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
-TEST_CASE("I51: a full file system ends a run with code 7, and its files are complete") {
+TEST_CASE("I51: a run that cannot write its files ends with code 7, and can be resumed") {
   const TestFolder place;
-  // The limit is in blocks of 512 bytes: run.json and scene.json fit, but the growing tables soon exceed it.
+  // No file may have more than 40 blocks of 512 bytes. The tables of the run soon exceed this limit; run.json
+  // and scene.json do not.
   const Result result = place.pliant("run top.json --fps 1000 --end 2 -o r --quiet", "ulimit -f 40;");
   CHECK(result.code == 7);
   CHECK(has(result.err, "cannot write"));
@@ -490,7 +494,7 @@ TEST_CASE("no graphics library is opened unless a picture is requested") {
   const TestFolder place;
   const Result run = place.pliant("run top.json -o r --obj", "LD_DEBUG=files");
   CHECK(run.code == 0);
-  CHECK(has(run.err, "libpng"));  // LD_DEBUG works
+  CHECK(has(run.err, "libpng"));  // LD_DEBUG lists the loaded libraries
   for (const char* library : {"OSMesa", "libEGL", "libGL", "libLLVM"}) CHECK_FALSE(has(run.err, library));
 }
 
@@ -505,7 +509,7 @@ TEST_CASE("a scene changed on the command line is also used for rendering and ex
 TEST_CASE("pictures from a run and from its recording are identical") {
   const TestFolder place;
   const Result run = place.pliant("run top.json -o r --quiet --png --fps 6");
-  if (run.code == 8) return;  // no graphics library here
+  if (run.code == 8) return;  // this machine has no graphics library
   REQUIRE(run.code == 0);
   const std::string picture = bytes_of(place.folder / "r/frames/frame_000002.png");
   CHECK(picture.substr(1, 3) == "PNG");
@@ -519,7 +523,7 @@ TEST_CASE("pictures from a run and from its recording are identical") {
   CHECK(bytes_of(place.folder / "other/frame_000002.png") != picture);
   CHECK(place.record("r").at("files").dump().find("frames/frame_*.png") != std::string::npos);
   CHECK(has(place.record("r").at("options").at("graphics"), "OpenGL"));
-  // Seen from straight above, without the optional parts of the picture.
+  // The camera looks straight down. The options switch off springs, ground and shadows.
   CHECK(place
             .pliant(
                 "render r --quiet -o above --frames 2 --camera-eye 0 0 3 --camera-target 0 0 0 --no-springs "

@@ -1,5 +1,5 @@
-// contacts.csv has the contacts with their forces, and joint_impulses.csv the impulses on joints. A resumed
-// run writes identical files.
+// contacts.csv contains the contacts and their forces. joint_impulses.csv contains the impulses on joints. A
+// resumed run writes identical files.
 #include <pliant/io/run/run.h>
 
 #include <map>
@@ -20,8 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns a scene with a box at rest on a floor, and two balls that a weld connects and that fall onto the
-/// floor.
+/// Returns a scene with a box at rest on a floor. Two balls, which a weld connects, fall onto the floor.
 std::unique_ptr<Scene> falling_scene() {
   auto scene = std::make_unique<Scene>();
   scene->end = 0.4;
@@ -117,18 +116,18 @@ TEST_CASE("contacts are recorded with names, positions and forces", "[contact]")
   for (const char* table : kTables) CHECK(layout.at("tables").contains(table));
   const auto record = nlohmann::json::parse(bytes_of(folder / "out" / kRunFile));
   for (const char* table : kTables) CHECK(record.dump().find(table) != std::string::npos);
-  // Existing::force replaces all files of the run
+  // With Existing::force a run replaces the files of an earlier run.
   REQUIRE(run(*falling_scene(), folder / "out", Existing::force));
   scene->contacts = false;
   REQUIRE(run(*scene, folder / "without"));
   for (const char* table : kTables) CHECK_FALSE(fs::exists(folder / "without" / table));
 }
 
-/// Checks that the recorded forces on the box at rest are its weight at all recorded times.
+/// Checks that at each recorded time the sum of the contact forces on the box equals its weight.
 void check_weight(Scene& scene) {
   const NewFolder folder;
   REQUIRE(run(scene, folder / "out"));
-  std::map<double, double> force_of_time;  // on the box, upwards
+  std::map<double, double> force_of_time;  // sum of the upward contact forces on the box, N
   for (const auto& row : table_of(folder / "out" / kContactsTable))
     if (row[1] == "box") force_of_time[std::stod(row[0])] += std::stod(row[15]);
   REQUIRE(force_of_time.size() > 3);
@@ -139,8 +138,7 @@ void check_weight(Scene& scene) {
   }
 }
 
-TEST_CASE("with error control, the recorded force is the impulse divided by the length of its own step",
-          "[contact]") {
+TEST_CASE("with error control, the recorded forces on a part at rest equal its weight", "[contact]") {
   auto scene = falling_scene();
   scene->integrator = "dop853";
   scene->tolerance = 1e-4;
@@ -150,7 +148,8 @@ TEST_CASE("with error control, the recorded force is the impulse divided by the 
 TEST_CASE("a joint that engages within a step does not change the recorded forces of other parts",
           "[contact]") {
   auto scene = falling_scene();
-  scene->body.joints().front()->during(0.0998);  // the weld; a recorded step ends at 0.1 s
+  // The weld engages within the step from 0.098 s to 0.1 s. The state at 0.1 s is recorded.
+  scene->body.joints().front()->during(0.0998);
   check_weight(*scene);
 }
 

@@ -1,4 +1,4 @@
-// The steps of a run, the steps whose states are recorded, and the selection of frames.
+// The steps of a run, the numbers of the steps after which states are recorded, and the selection of frames.
 #include <pliant/io/frame_schedule.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ TEST_CASE("N28: steps fill the run, and the last step ends at the end of the run
   CHECK(none.records(0));
 }
 
-TEST_CASE("I33, N24: a run that is impossible is refused, and the message gives the reason") {
+TEST_CASE("I33, N24: invalid or extreme values of end, step and frame rate are refused") {
   const double nan = std::nan("");
   for (const double bad : {0.0, -1.0, nan, HUGE_VAL}) {
     CHECK_THROWS_AS(FrameSchedule(1, bad, 25), std::invalid_argument);

@@ -1,5 +1,5 @@
-// OBJ and PLY files: positions and values are read back exactly, normals of OBJ files to six decimals; groups
-// and indices are correct.
+// OBJ and PLY files contain exact positions. PLY files also contain exact surface values. OBJ files contain
+// normals rounded to six decimals, one group for each part, and correct indices.
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -133,7 +133,7 @@ TEST_CASE("a PLY file has the size and the numbers of elements that its header s
   std::memcpy(n, bytes.data() + data + sizeof x, sizeof n);
   CHECK(Vec3<double>(x[0], x[1], x[2]) == meshes[0].mesh.x.col(0));
   CHECK(std::abs(std::hypot(n[0], n[1], n[2]) - 1) < 1e-6);
-  // The last face belongs to the last part.
+  // The last index of the file is that of the last corner of the last part.
   std::int32_t corner = 0;
   std::memcpy(&corner, bytes.data() + bytes.size() - 4, 4);
   CHECK(corner == vertices - meshes.back().mesh.x.cols() +
@@ -170,8 +170,8 @@ TEST_CASE("each frame becomes a file whose name has the number of the frame") {
 
 namespace {
 
-/// Returns a scene with a soft, rotated solid with curved elements, a part with a dynamic radius, and a rigid
-/// part.
+/// Returns a scene with three parts: a rotated solid with curved finite elements, a sphere with a dynamic
+/// radius, and a rigid ellipsoid. Both soft parts are stretched by 10 %. by: quantity that colours the parts.
 std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   auto scene = std::make_unique<Scene>();
   scene->body.gravity.setZero();
@@ -181,7 +181,7 @@ std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   settings.resolution = 2;
   settings.order = 2;
   settings.energies = {local_law("elastic", {1e5, 0.3})};
-  // A displacement without rigid motion: a stretch along the axes.
+  // A stretch by 10 % in all directions, which contains no rigid motion.
   settings.displacement = [](const Vec3<double>& X) { return Vec3<double>(0.1 * X); };
   soft.deform_locally(std::move(settings));
   Part& ball = scene->body.add(make_part("ball", "sphere", {}, 1000));

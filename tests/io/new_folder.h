@@ -1,4 +1,4 @@
-// A new folder for the files of a test. It is removed at the end of the test.
+// A new temporary folder for the files of a test. The destructor removes the folder and its files.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// NumPy tables: round trips, continuation after a truncation, and damaged files.
+// NumPy tables are read back unchanged, resumed after a truncation, and refused if they are damaged.
 #include <pliant/io/format/npy.h>
 
 #include <cmath>
@@ -78,7 +78,7 @@ TEST_CASE("I53: rows that were not flushed, and partial rows, are ignored") {
   append_rows(writer, 2, 5, 9);
   CHECK(NpyReader(file).rows() == 5);
   const std::string whole = bytes_of(file);
-  // As if the writer had been killed after it wrote rows and before it updated their number in the header.
+  // A writer that is killed leaves this file: it has written rows, but not their number in the header.
   set_bytes(file, whole + std::string(100, 'x'));
   CHECK(NpyReader(file).rows() == 5);
   for (std::size_t cut = 128; cut <= whole.size(); ++cut) {

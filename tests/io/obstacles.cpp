@@ -1,4 +1,5 @@
-// Obstacles in the files of a run: the mesh beside the scene, and the surfaces in frames, including planes.
+// A run stores the meshes of its obstacles beside its scene. Obstacles and visible planes are among the
+// surfaces of a frame.
 #include "catch.h"
 
 #include <memory>
@@ -18,8 +19,8 @@ using namespace pliant;
 
 namespace {
 
-/// Returns the text of a scene: a ball above a roof of two triangles, whose coordinates are not round
-/// numbers, a plate that is removed at 0.05 s, and a plate that is not visible.
+/// Returns the text of a scene with a ball and three obstacles: a roof (mesh of two triangles), a plate that
+/// is removed at 0.05 s, and a plate that is not visible.
 std::string scene_text() {
   return R"json({
     "time": {"end": 0.1, "step": 0.005},
@@ -32,6 +33,8 @@ std::string scene_text() {
   })json";
 }
 
+/// Writes roof.json and the mesh of its roof. third: coordinates of the third vertex of the mesh. Coordinates
+/// with many digits show whether all bits are kept.
 void write_scene(const NewFolder& folder, const std::string& third) {
   std::filesystem::create_directories(folder / "meshes");
   set_bytes(folder / "meshes/roof.obj",

@@ -1,4 +1,4 @@
-// PNG files read back by libpng, and failures that leave no file.
+// libpng reads PNG files back unchanged. A failed write leaves no file.
 #include <png.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// Recordings: states are read back to the last bit, damage is detected, pictures between steps are smooth.
+// Recordings: states are read back to the last bit, damage is detected, and states between steps are
+// accurate.
 #include <pliant/io/recording.h>
 
 #include <cmath>
@@ -31,7 +32,8 @@ bool bit_equal(const State& a, const State& b) {
          a.work == b.work && a.at_limit == b.at_limit;
 }
 
-// Performs `steps` steps, records the state after every `stride`-th of them, and returns the recorded states.
+// Performs `steps` steps. Records the initial state and the state after every `stride`-th step, and returns
+// the recorded states.
 std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int stride) {
   Simulation simulation(scene.body, scene.integrator);
   write_layout(folder, simulation.model(), FrameSchedule(scene.end, scene.step, scene.frame_rate), {});
@@ -66,7 +68,7 @@ TEST_CASE("recorded states are read back to the last bit, with limits and works"
   CHECK(states.back().work.cwiseAbs().maxCoeff() > 0);
 }
 
-TEST_CASE("recorded sleeping bodies continue to sleep") {
+TEST_CASE("states with sleeping parts are read back to the last bit") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   scene->body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
@@ -89,7 +91,8 @@ TEST_CASE("recorded sleeping bodies continue to sleep") {
 
 namespace {
 
-/// Returns pulled_scene() with two more boxes: one stands on a floor, the other on the first one.
+/// Returns pulled_scene() with contact, a floor and two more boxes. The box "below" stands on the floor, and
+/// the box "above" stands on "below".
 std::unique_ptr<Scene> standing_scene() {
   auto scene = pulled_scene();
   scene->body.contact.active = true;
@@ -116,8 +119,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
       CHECK(hash(recording.state(static_cast<std::int64_t>(i))) == hash(states[i]));
     CHECK(states.back().contact_cache.size() > 4);
   }
-  // If the cache of the last state is truncated, the recording has one state less; resuming from there writes
-  // an identical file.
+  // If the cache of the last state is truncated, the recording has one state fewer. If this state is recorded
+  // again, the file is identical to the original file.
   set_bytes(folder / kContactCacheFile, whole.substr(0, whole.size() - 8));
   const auto rows = static_cast<std::int64_t>(states.size() - 1);
   CHECK(Recording(folder.path, model).rows() == rows);
@@ -126,7 +129,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
   writer.flush();
   CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
-  // Bytes of a force and of the index of part a of the last contact, and of a force of the contact before it.
+  // Distances from the end of the file of three bytes: in the force and in the index of part a of the last
+  // contact, and in the force of the last but one contact. All of them belong to the last state.
   for (const std::size_t from_end : {5, 75, 85}) {
     std::string bytes = whole;
     bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);
@@ -135,8 +139,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
   }
   set_bytes(folder / kContactCacheFile, whole);
-  // A flipped bit in the columns of modes.npy that give the rows of a state in the contact cache, or the age
-  // of the cache, damages no other state.
+  // Three columns of modes.npy give the first and last rows of a state in the contact cache, and the age of
+  // the cache. A flipped bit in these columns of state 2 is detected, and states 1 and 3 remain readable.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
   for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;
@@ -213,7 +217,7 @@ TEST_CASE("I55: one flipped bit is detected") {
   }
 }
 
-TEST_CASE("I55: a recording of another scene is refused with the column that differs") {
+TEST_CASE("I55: a recording of another scene, or with a damaged layout, is refused") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   record(folder.path, *scene, 4, 1);
@@ -234,7 +238,7 @@ TEST_CASE("pictures between two steps follow the motion to fourth order") {
     record(folder.path, *scene, static_cast<int>(std::lround(0.4 / h)), 1);
     const Model model(scene->body);
     const Recording recording(folder.path, model);
-    // Reference with much smaller steps.
+    // The reference motion has much smaller steps.
     const auto fine = free_top();
     Simulation simulation(fine->body, "rk4");
     double worst = 0;
@@ -298,7 +302,7 @@ TEST_CASE("with error control, pictures between two steps are as accurate as the
     CAPTURE(worst.at_steps, worst.between);
     CHECK(worst.between < 1.5 * worst.at_steps);
   }
-  // Stiff motion, which no explicit step resolves, is interpolated.
+  // Explicit steps are too inaccurate for stiff motion, so the recording interpolates its states.
   const auto worst = errors("esdirk", 1e-5, 1e10);
   CAPTURE(worst.at_steps, worst.between);
   CHECK(worst.between < 3 * worst.at_steps);

@@ -1,5 +1,5 @@
-// Runs in their folders: interrupted and resumed runs write files identical to those of uninterrupted ones,
-// folders are never shared or mixed, and run.json reports every kind of ending correctly.
+// Runs and the files in their folders. A run that is interrupted and resumed writes files identical to those
+// of an uninterrupted run. No folder contains files of two runs. run.json reports how a run ended.
 #include <pliant/io/run/run.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ nlohmann::json record_of(const fs::path& folder) {
 struct RunSettings {
   Existing existing = Existing::refuse;
   int threads = 1;
-  long stop_after = -1;  // steps
+  long stop_after = -1;  // number of steps; -1: the run is not stopped
 };
 
 bool run(Scene& scene, const fs::path& folder, const RunSettings& settings = {}) {
@@ -152,10 +152,10 @@ TEST_CASE("a complete run continues to a later end as if it had never stopped") 
     return scene;
   };
   REQUIRE(run(*until(0.2), folder / "a"));
-  REQUIRE(run(*until(0.13), folder / "b"));  // not at a frame
+  REQUIRE(run(*until(0.13), folder / "b"));  // 0.13 s is between two frames
   REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));
   CHECK(results_of(folder / "a") == results_of(folder / "b"));
-  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));  // nothing remains to be done
+  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));  // this run has no steps
   CHECK(results_of(folder / "a") == results_of(folder / "b"));
   CHECK_THROWS_AS(run(*until(0.1), folder / "b", {Existing::resume}), RecordingMismatch);
 }
@@ -267,7 +267,7 @@ TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, 
 }
 
 TEST_CASE("pictures of a run with error control follow the motion within short and long steps") {
-  // A free top, and a bouncing ball whose steps are as long as its flights.
+  // A free top and a bouncing ball.
   auto scene_of = [](double tolerance) {
     auto scene = free_top();
     scene->tolerance = tolerance;
@@ -350,7 +350,7 @@ TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps
     REQUIRE(session.simulate());
     return session.estimate_error();
   };
-  // A pendulum: the joint force m g cos + m v^2 / l is compared with a far more accurate run.
+  // The joint force of a pendulum is compared with that of a far more accurate simulation.
   auto add_pendulum = [](MultiBody& body) {
     Part& bob = body.add(make_part("bob", "sphere", {}, 1000));
     bob.rest({{"r", 0.1}}).place({0.5, 0, 0});
@@ -383,8 +383,8 @@ TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps
   CHECK(joint_estimate.gap < 1e-14);
   CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == joint_estimate.joint_force);
 
-  // A box that slides to a stop, with error control. The estimate halves the longest contact step of the
-  // settings for the repetition, and then restores it.
+  // A box that slides to a stop, with error control. estimate_error() repeats the run with contact steps of
+  // half the length, and then restores the setting longest_step of the scene.
   auto box = scene_of("box");
   box->tolerance = 1e-6;
   box->integrator = "dop853";
@@ -495,7 +495,7 @@ TEST_CASE("I58: two runs never share a folder") {
     CHECK_THROWS_AS(RunFolder(folder / "r", Existing::resume), OutputRefused);
   }
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
-  set_bytes(folder / "r" / kLockFile, "12345");  // lock of a process that was killed
+  set_bytes(folder / "r" / kLockFile, "12345");  // a process that was killed leaves its lock file
   CHECK_NOTHROW(RunFolder(folder / "r", Existing::force));
 }
 
@@ -541,7 +541,7 @@ TEST_CASE("I59: runs without parts, or without duration, are valid") {
   CHECK(record_of(folder / "still").at("progress").at("states") == 1);
 }
 
-TEST_CASE("run.json reports the methods used and the quantities that were skipped") {
+TEST_CASE("run.json reports steps, evaluations, skipped computations and files") {
   const NewFolder folder;
   const auto scene = free_top();
   scene->end = 0.335;
@@ -559,7 +559,7 @@ TEST_CASE("run.json reports the methods used and the quantities that were skippe
   CHECK(record.counters.surfaces == 0);
   CHECK_FALSE(record.skipped.empty());
   CHECK(record.stable_step ==
-        Approx(0.5 / std::sqrt(5.01)));  // nothing is stiff; a step rotates the top by half a radian
+        Approx(0.5 / std::sqrt(5.01)));  // no stiffness limits it; the top rotates by 0.5 rad in this time
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
 }

@@ -1,5 +1,4 @@
-// Scenes for the tests of recordings, built without a file: deforming and rigid parts, springs, forces,
-// limits.
+// Scenes for tests of recordings and pictures, built without a scene file.
 #pragma once
 
 #include <memory>
@@ -8,10 +7,10 @@
 #include <pliant/part/registry.h>
 #include <pliant/scene/scene.h>
 
-/// Returns a scene with four parts. The first part tapers up to its limits, twists and stretches; a moving
-/// spring, a force and a rest value that depends on time drive it. The second, rigid part is on two springs.
-/// The third part is fixed. The fourth, rigid part hangs from the second one by a ball joint, and from the
-/// world by a string.
+/// Returns a scene with four parts. "blob" stretches, twists, and tapers up to its limits; a spring with a
+/// moving end, a force and a rest value that depends on time drive its motion. "rider" is rigid, and springs
+/// connect it to "blob" and "wall". "wall" is fixed. "bob" is rigid and hangs from "rider" by a ball joint; a
+/// string connects "bob" to the world.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();

@@ -1,5 +1,6 @@
-// trajectory.csv has a header and numbers in full precision. For more than a hundred parts it has only the
-// time, tracks and totals (energies, works, balance and momenta).
+// trajectory.csv has a header and numbers in full precision. For a scene with more than a hundred parts it
+// has only the time, tracks and totals (energies, works, balance and momenta), unless the scene requests all
+// parts.
 #include <pliant/io/trajectory.h>
 
 #include <cmath>
@@ -68,7 +69,7 @@ TEST_CASE("the table contains the recorded numbers exactly, with their names") {
   };
   CHECK(header.front() == "t");
   column("blob.com.x");
-  column("rider, \"heavy\".com.z");  // its frame is not at its centre of mass
+  column("rider, \"heavy\".com.z");  // the frame of the rider is not at its centre of mass
   CHECK(std::find(header.begin(), header.end(), "wall.c.x") == header.end());
 
   double worst = 0;
@@ -97,8 +98,8 @@ TEST_CASE("the table contains the recorded numbers exactly, with their names") {
 }
 
 TEST_CASE("a joint's force is the one on its first side, in the world frame, and its gap is closed") {
-  // One weight hangs at rest from a ball joint at its top, and another one swings. Their frames are rotated
-  // or not, and the weights are on the first or on the second side of their joints.
+  // One sphere hangs at rest from a ball joint at its top, and another one swings about a ball joint. The
+  // test runs with and without rotated frames, and with the spheres on the first or on the second side.
   const double g = 9.81, r = 0.1, mass = 3;
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity(),
                            turned = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.4).normalized();
@@ -110,7 +111,7 @@ TEST_CASE("a joint's force is the one on its first side, in the world frame, and
       bob.rest({{"r", r}}).mass(mass).place({0.4, 0, -r}, R);
       Part& swung = scene.body.add(make_part("swung", "sphere", {}, 1000));
       swung.rest({{"r", r}}).mass(mass).place({2 + r, 0, 0}, R);
-      // The material points in the world directions up and minus x.
+      // Returns the material point on the surface of a sphere in this world direction from its centre.
       const auto on = [&](const Part& part, const Vec3<double>& direction) {
         const Vec3<double> at = R.conjugate() * direction;
         return point(part, std::asin(at[2]), std::atan2(at[1], at[0]));
@@ -146,10 +147,12 @@ TEST_CASE("a joint's force is the one on its first side, in the world frame, and
         REQUIRE((force("joint.hold") - sign * Vec3<double>(0, 0, mass * g)).norm() <= 1e-11 * mass * g);
         REQUIRE(number("joint.hold.gap") <= 1e-12);
         REQUIRE(number("joint.swing.gap") <= 1e-12);
-        // m (c_ddot - g) of a compound pendulum, from its angle below the x axis.
+        // The joint force on the swinging sphere is m (c_ddot - g): c_ddot is the acceleration of its centre,
+        // g the gravity vector. along, across: unit vectors from the joint to the centre, and in the
+        // direction of the swing; I = 7/5 m r^2: moment of inertia about the joint.
         const Vec3<double> along = (simulation.state().q.segment<3>(7) - Vec3<double>(2, 0, 0)) / r,
                            across(along[2], 0, -along[0]);
-        const double inertia = 1.4 * r, acceleration = across[2] * -g / inertia,  // 7/5 m r^2 / (m r)
+        const double inertia = 1.4 * r, acceleration = across[2] * -g / inertia,  // I / (m r)
             rate = simulation.state().v.segment<3>(6).squaredNorm() / r;
         const Vec3<double> needed = mass * (r * acceleration * across - rate * along + Vec3<double>(0, 0, g));
         REQUIRE((force("joint.swing") - sign * needed).norm() <= 1e-10 * mass * g);

@@ -1,11 +1,13 @@
-# Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
+# Builds and runs a client of pliant outside the source tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
 #   find          find_package(pliant COMPONENTS core) in the installation PREFIX, with the other packages disabled
 #   components    find_package with all of COMPONENTS
-#   absent        find_package with a component that does not exist: must fail with a message that names the component
+#   absent        find_package with a component that does not exist; it must fail with a message that names the component
 #   pkg-config    pliant.pc of PREFIX
-#   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, because another build takes minutes
+#   subdirectory  add_subdirectory(SOURCE); the client links the existing library CORE, because another build of core
+#                 takes minutes
 #   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, built with the installation PREFIX
-# GENERATOR, CXX and LAUNCHER are those of the calling build.
+# The programs are built in the folder WORK/WAY. GENERATOR, CXX and LAUNCHER are the generator, compiler and compiler
+# launcher of the calling build.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
 file(REMOVE_RECURSE ${work})
@@ -55,7 +57,8 @@ endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${work}/${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
 if(WAY STREQUAL readme)
-  # Compare the time and the energy. The other numbers of the line are rounding errors, which depend on the processor.
+  # Only the text before ", balance" is compared. The numbers after it are rounding errors, which depend on the
+  # processor.
   string(REGEX REPLACE ", balance.*" "" shown "${shown}")
   string(FIND "${printed}" "${shown}" at)
   if(NOT at EQUAL 0)

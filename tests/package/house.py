@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Measures the structure of the engine: python3 tests/package/house.py [--check] [FOLDER OF THE PROJECT].
+"""Measures the structure of the sources: python3 tests/package/house.py [--check] [FOLDER OF THE PROJECT].
 
-Prints the lines and concepts of each folder, and the functions with more than 60 lines or 6 parameters. A concept is a
-file name without its suffix: dynamics.h, dynamics-inl.h and dynamics.cpp are one concept. The option --check makes the
-script fail if a folder has more than 20 concepts.
+Prints the numbers of lines and concepts of each folder of include/pliant and src. Also prints the functions with more
+than 60 lines, and the functions with more than 6 parameters. A concept is a file name without its suffix: dynamics.h,
+dynamics-inl.h and dynamics.cpp are one concept. The option --check makes the script fail if a folder has more than 20
+concepts.
 """
 import re
 import sys

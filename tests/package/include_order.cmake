@@ -1,6 +1,7 @@
-# Checks the includes. A file includes only its own folder and folders to its left in the list `order`. Apart from headers
-# of pliant, headers of core include only Eigen, the standard library and the headers of vector instructions (immintrin.h,
-# arm_neon.h). No include uses "..". Each header has #pragma once.
+# Checks the includes of include/pliant and src. A file includes only headers of its own folder and of folders to the left
+# of this folder in the list `order`. Apart from headers of pliant, headers of core include only Eigen, the standard
+# library and the headers of vector instructions (immintrin.h, arm_neon.h). No include uses "..". Each header has
+# #pragma once.
 # Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(order math shape deform local part solve body collision project method contact simulate scene io render)
@@ -44,7 +45,7 @@ function(check_file path)
 endfunction()
 
 file(GLOB_RECURSE files ${SOURCE}/include/*.h ${SOURCE}/src/*.h ${SOURCE}/src/*.cpp)
-list(REMOVE_ITEM files ${SOURCE}/include/pliant/pliant.h)  # includes all folders of core
+list(REMOVE_ITEM files ${SOURCE}/include/pliant/pliant.h)  # this header includes all folders of core
 if(NOT files)
   message(FATAL_ERROR "there are no sources in ${SOURCE}")
 endif()

@@ -1,4 +1,4 @@
-# Checks that no file of the project contains a path of a particular machine.
+# Checks that no text file of the project contains a path of a particular machine, for example in a home folder.
 # Run as cmake -D SOURCE=... -P no_machine_paths.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(places "(^|[^A-Za-z0-9_.])/(home|root|work|Users|mnt|media)/[A-Za-z0-9_]|[A-Z]:\\\\Users")

@@ -1,5 +1,5 @@
-# page_block(page place opening result): sets `result` to the text of a code block in a Markdown page. It is the first block
-# after the text `place` whose opening line is `opening`. Stops if there is no such block.
+# page_block(page place opening result): sets `result` to the text of a code block in a Markdown page. The block is the
+# first one after the text `place` whose opening line is `opening`. Fails if the page has no such block.
 function(page_block page place opening result)
   file(READ ${page} text)
   string(FIND "${text}" "${place}" at)

@@ -1,5 +1,5 @@
-# Checks that links between the pages of the project lead to files. Also checks that a file exists for each file name with a
-# folder that a page shows in backticks.
+# Checks that links between the pages of the project lead to files. If a page shows a file name with a folder in
+# backticks, this file must exist in the project, in the folder of the page or in include/pliant.
 # Run as cmake -D SOURCE=... -P page_links.cmake.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB pages ${SOURCE}/*.md)
@@ -19,7 +19,7 @@ foreach(page IN LISTS pages)
   string(REGEX REPLACE "[][;]" "" text "${text}")
 
   string(REGEX MATCHALL "`[a-z0-9_-]+/[a-z0-9_/-]+\\.(h|cpp|cmake|json|md|py|sh|csv)`" names "${text}")
-  if(shown STREQUAL CHANGELOG.md)  # it names files of older versions
+  if(shown STREQUAL CHANGELOG.md)  # the changelog names files of older versions
     set(names "")
   endif()
   foreach(name IN LISTS names)
@@ -29,7 +29,7 @@ foreach(page IN LISTS pages)
     endif()
   endforeach()
 
-  string(REGEX REPLACE "`[^`\n]*`" "" text "${text}")  # code may contain "](" that is no link
+  string(REGEX REPLACE "`[^`\n]*`" "" text "${text}")  # in code, "](" is no link
   string(REGEX MATCHALL "<LINK [^) \n]*" links "${text}")
   foreach(link IN LISTS links)
     string(REGEX REPLACE "^<LINK ([^#]*).*$" "\\1" target "${link}")

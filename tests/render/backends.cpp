@@ -1,4 +1,4 @@
-// Pictures are identical for every backend and any number of raster threads.
+// Pictures are identical with OSMesa and EGL, and with any number of raster threads.
 #include <sys/wait.h>
 
 #include <cstdio>
@@ -23,7 +23,8 @@ bool opens(const GlBackend backend) {
   return false;
 }
 
-// Returns the output of the program render_digest with these settings in its environment.
+// Runs the program render_digest and returns the last line of its output, a hash of two pictures.
+// environment: settings of environment variables; backend: osmesa or egl.
 std::string digest(const std::string& environment, const std::string& backend) {
   const std::string command = "env " + environment + " '" PLIANT_RENDER_DIGEST "' " + backend;
   FILE* pipe = ::popen(command.c_str(), "r");
@@ -53,7 +54,7 @@ TEST_CASE("every backend is probed, and gives a reason if it does not open") {
 
 TEST_CASE("OSMesa and EGL give identical bytes, side by side in one process") {
   if (!opens(GlBackend::osmesa) || !opens(GlBackend::egl)) {
-    WARN("not compared: needs both libosmesa6 and libegl1 with libgl1-mesa-dri");
+    WARN("not compared: the test needs libosmesa6, and libegl1 with libgl1-mesa-dri");
     return;
   }
   test::Scene scene;

@@ -1,4 +1,4 @@
-// The automatic camera shows the whole box, as large as the margin permits.
+// The automatic camera shows a whole box, which fills 84 % of the width or of the height of the picture.
 #include <limits>
 
 #include "catch.h"
@@ -34,7 +34,7 @@ TEST_CASE("the automatic camera frames any box") {
     }
 }
 
-TEST_CASE("an empty box and a point are framed, too; values that are not finite are refused") {
+TEST_CASE("the automatic camera accepts an empty box and a point, and refuses infinite boxes") {
   const Camera camera = automatic_camera({}, 1.5);
   CHECK((camera.eye - camera.target).norm() > 1);
   const Eigen::Vector3d p(3, 4, 5);

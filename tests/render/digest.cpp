@@ -1,5 +1,6 @@
 // Draws two pictures with the backend named by the argument (osmesa or egl; without an argument osmesa) and
-// prints a hash of their bytes. Tests run it in a process with other environment variables.
+// prints a hash of their bytes. backends.cpp runs this program with
+// several settings of environment variables.
 #include <cstdint>
 #include <cstdio>
 #include <exception>

@@ -1,5 +1,5 @@
-// Pictures of a recorded motion: one camera and one ground for all frames, growing tracks, and the settings
-// of the scene.
+// Pictures of a recorded motion. All frames have one camera and one ground, the tracks grow, and the settings
+// of the scene are used.
 #include <pliant/render/film.h>
 
 #include "catch.h"
@@ -50,8 +50,8 @@ TEST_CASE("camera and ground do not move, and show the whole motion") {
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 4);
-    // One track; the lines of three springs and a dot where one of them is attached to the world; the line of
-    // a string and a dot where it is attached to the world.
+    // One tracked point, the lines of three springs, the dot at the world end of one spring, and the line and
+    // the dot (world end) of a string.
     REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
@@ -141,7 +141,7 @@ TEST_CASE("deforming parts have one colour scale in all frames") {
     CHECK(picture.scale->high == scale.high);
     REQUIRE(picture.bodies[0].values != nullptr);  // the blob
     CHECK(picture.bodies[0].values->size() == picture.bodies[0].mesh->x.cols());
-    for (std::size_t i = 1; i < 4; ++i) CHECK(picture.bodies[i].values == nullptr);  // rigid, fixed
+    for (std::size_t i = 1; i < 4; ++i) CHECK(picture.bodies[i].values == nullptr);  // rigid parts
     largest = std::max(largest, picture.bodies[0].values->maxCoeff());
   }
   CHECK(largest > 0.6 * scale.high);

@@ -1,5 +1,5 @@
-// OpenGL is loaded when the first renderer is created, not earlier. All checks are in one test case, because
-// ctest runs each case in a new process, in which nothing has loaded OpenGL yet.
+// OpenGL is loaded when the first renderer is created, not earlier. The checks depend on their order and must
+// run in one process. They are in one test case, because ctest starts a new process for each case.
 #include <fstream>
 #include <string>
 

@@ -1,4 +1,5 @@
-// Contents of pictures: light and shade, shadows, edges, background, tracks; and pictures that are refused.
+// Contents of pictures: light, shadows, edges, background, tracks, colour scales. Invalid pictures are
+// refused.
 #include <limits>
 
 #include "catch.h"
@@ -181,7 +182,7 @@ TEST_CASE("corners with their own normals keep an edge sharp") {
   Renderer renderer(640, 480);
   const auto step = [&](const TriangleMesh& mesh) {
     Picture picture = picture_of(mesh);
-    picture.lights.to_key = {-0.6f, -1, 0.3f};  // reaches both faces
+    picture.lights.to_key = {-0.6f, -1, 0.3f};  // the light reaches both faces
     const Image image = renderer.draw(picture);
     const int far_left = brightness(pixel(image, 320 - 80, 240)),
               left = brightness(pixel(image, 320 - 3, 240));
@@ -341,7 +342,7 @@ TEST_CASE("a body with values has the colours of the scale") {
   const TriangleMesh ball = test::sphere({0, 0, 0}, 1);
   const VecX<double> height = ball.x.row(2).transpose();
   Picture picture = picture_of(ball);
-  // Uniform light, so that the picture shows the colour.
+  // Without a key light, all sides of the ball have about equal brightness.
   picture.lights.key_strength = 0;
   picture.lights.sky = picture.lights.bounce = {1, 1, 1};
   picture.lights.ambient_strength = 0.8f;
@@ -356,8 +357,7 @@ TEST_CASE("a body with values has the colours of the scale") {
     const std::array<int, 3> seen = pixel(image, pixel_of(at, picture.camera, 400, 300));
     const Eigen::Vector3f asked = mapped_color(z + 0.5);
     CAPTURE(z, seen[0], seen[1], seen[2]);
-    // The order of the channels by brightness is that of the mapped colour, because gloss and ambient light
-    // only scale and raise the channels.
+    // This light changes the values of the channels (red, green, blue), but not the order of these values.
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (asked[i] > asked[j] + 0.1f) CHECK(seen[i] > seen[j]);
@@ -402,8 +402,8 @@ TEST_CASE("the colour bar is at the right, with its colours, ticks and title") {
   REQUIRE(bottom - top > 200);
   for (int y = top + 2; y < bottom - 2; ++y)
     CHECK(near(pixel(with, middle, y), mapped_color((bottom + 0.5 - y) / (bottom + 1 - top))));
-  // There are dark marks of five ticks beside the bar, and letters above it. Left of the bar the picture is
-  // that without a scale.
+  // Beside the bar there are the dark marks of five ticks, and above the bar there are letters. Left of the
+  // bar the picture with a scale and the picture without a scale are equal.
   const auto dark = [&](int x, int y) { return brightness(pixel(with, x, y)) < 200; };
   int marks = 0;
   for (int y = top - 4; y < bottom + 4; ++y) marks += dark(right + 4, y) && !dark(right + 4, y - 1);

@@ -67,7 +67,7 @@ inline TriangleMesh cube(const Eigen::Vector3d& centre, double half, double turn
   return mesh;
 }
 
-/// Two spheres and a cube on the ground with a track: a picture that uses every pass of the renderer.
+/// A picture of two spheres, a cube, the ground and a track. origin: point of the ground below the middle, m.
 struct Scene {
   std::vector<TriangleMesh> meshes;
   std::vector<VecX<double>> values;
@@ -86,7 +86,7 @@ struct Scene {
     picture.ground.height = origin[2];
     picture.camera = automatic_camera(bounds(picture), 4.0 / 3);
   }
-  /// Colours the spheres by the height of their vertices.
+  /// Colours the spheres by the height of their vertices (m), and sets the colour scale of the picture.
   void color_by_height() {
     values.resize(2);
     for (std::size_t i = 0; i < 2; ++i) {

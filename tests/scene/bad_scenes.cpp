@@ -1,6 +1,6 @@
-// Scenes that must be refused, each with its expected message: bad/NAME.json and bad/NAME.txt, which is the
-// whole text of the exception. After an intended change of a message, run this test with
-// PLIANT_REWRITE_GOLDENS=1 in the environment: it rewrites the texts. Then review them with git diff.
+// Each scene bad/NAME.json must be refused. The text of the exception must equal the file bad/NAME.txt. After
+// an intended change of a message, run this test with PLIANT_REWRITE_GOLDENS=1 in the environment. The test
+// then writes all files bad/NAME.txt again. Review the changes with git diff.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the names of the files with this ending, without the ending.
+/// Returns the sorted names of the files with this ending in the folder bad, without the ending.
 std::vector<std::string> bad_scenes(const std::string& ending) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(PLIANT_BAD_SCENES))
@@ -34,6 +34,7 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Returns the text of the SceneError for a file; "accepted" and the warnings if the scene is read.
 std::string refusal(const std::string& file) {
   pliant::Diagnostics diagnostics;
   try {
@@ -52,7 +53,7 @@ TEST_CASE("every bad scene is refused with its expected message") {
   CHECK(bad_scenes(".txt") == names);
   const bool rewrite = std::getenv("PLIANT_REWRITE_GOLDENS") != nullptr;
   const fs::path before = fs::current_path();
-  fs::current_path(PLIANT_BAD_SCENES);  // messages name the file as it was given
+  fs::current_path(PLIANT_BAD_SCENES);  // messages then contain the name of the file without folders
   for (const std::string& name : names) {
     INFO(name);
     const std::string message = refusal(name + ".json");

@@ -1,5 +1,5 @@
-// Contact rules in scene files: groups, pairs and joints, planes that appear and disappear, prescribed
-// motion.
+// Contact in scene files: groups and pairs of things that collide, parts connected by joints, planes and
+// plates that appear or disappear, and parts with a prescribed motion.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -16,7 +16,7 @@ using pliant::Vec3;
 
 namespace {
 
-/// A scene that has been run until a given time (s).
+/// A scene after a simulation until a given time (s), with rk4 and steps of 2 ms.
 class FinishedRun {
  public:
   FinishedRun(const std::string& text, double until) {
@@ -40,6 +40,7 @@ std::string ball(const std::string& name, double x, double z) {
          R"json(", "shape": "sphere", "parameters": {"r": 0.1}, "position": [)json" + std::to_string(x) +
          ", 0, " + std::to_string(z) + "]}";
 }
+/// Returns the distance (m) of a free fall during t seconds.
 double fall_height(double t) {
   return 0.5 * 9.81 * t * t;
 }
@@ -47,8 +48,8 @@ double fall_height(double t) {
 }  // namespace
 
 TEST_CASE("groups and pairs of a scene determine the contacts", "[contact]") {
-  // Columns of two balls: the lower ball touches the floor, and the upper ball is 0.1 m above the lower one.
-  // Depending on the rules the balls stack, overlap, or fall through the floor.
+  // Columns of two balls: the lower ball touches the floor, and the gap between the two balls is 0.1 m. The
+  // rules determine whether the balls collide with each other and with the floor.
   const std::string parts = "\"parts\": [" + ball("plain", 0, 0.1) + "," + ball("plain2", 0, 0.4) + "," +
                             ball("crumb", 1, 0.1) + "," + ball("crumb2", 1, 0.4) + "," +
                             ball("ghost", 2, 0.1) + "," + ball("ghost2", 2, 0.4) + "," + ball("odd", 3, 0.1) +
@@ -66,7 +67,7 @@ TEST_CASE("groups and pairs of a scene determine the contacts", "[contact]") {
   CHECK(run.height("crumb2") == Approx(0.1).margin(1e-9));
   CHECK(run.height("ghost") == Approx(0.1 - fall_height(0.6)).epsilon(1e-9));
   CHECK(run.height("ghost2") ==
-        Approx(0.1).margin(1e-9));  // a rule that names the part takes precedence over a rule of its group
+        Approx(0.1).margin(1e-9));  // a rule for the part has precedence over a rule for its group
   CHECK(run.height("odd") == Approx(0.1).margin(1e-9));
   CHECK(run.height("crumb3") == Approx(0.3).margin(1e-9));
 }

@@ -1,6 +1,6 @@
 // Any file content gives a scene that can run, a SceneError, or an UnsatisfiableModel for joints that cannot
-// close: no other exception, no crash, no hang. The scenes of scenes/ and bad/ are mutated in thousands of
-// ways, by bytes and by values, reproducibly.
+// close. There is no other exception, and no crash. The test mutates the bytes and values of the scenes in
+// scenes/ and bad/ in thousands of ways, which are the same in each run of the test.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -26,8 +26,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Sanitizers make a case thirty times as slow. Builds with them run one of sixteen cases, other builds all
-// cases.
+// With sanitizers a case takes thirty times as long. Builds with sanitizers run one in kEach cases.
 #ifdef PLIANT_SANITIZED
 constexpr int kEach = 16;
 #else
@@ -174,7 +173,8 @@ class Mutator {
 
 enum class Outcome { refused, ready };
 
-/// Loads a scene as `pliant check` does before its trial steps. Unexpected exceptions are passed on.
+/// Loads a scene as `pliant check` does before its trial steps. Returns `refused` for a SceneError or an
+/// UnsatisfiableModel. Throws all other exceptions.
 Outcome load(const std::string& name, const std::string& text) {
   pliant::Diagnostics diagnostics;
   try {
@@ -196,7 +196,8 @@ Outcome load(const std::string& name, const std::string& text) {
   }
 }
 
-/// Loads a mutated scene, and reports the scene if an unexpected exception occurs.
+/// Loads a mutated scene and adds 1 to `ready` if the scene can run. The test fails, and prints the scene, if
+/// load() throws.
 void load_mutated(const Sample& sample, const std::string& text, int* ready) {
   try {
     *ready += load(sample.name, text) == Outcome::ready ? 1 : 0;
@@ -215,7 +216,8 @@ TEST_CASE("mutated scenes are refused with a message or can run") {
   int cases = 0, ready = 0;
   for (const CaseCounts& counts : {CaseCounts{PLIANT_SCENES, 20, 40}, CaseCounts{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(counts.folder)) {
-      // Some scenes need a second to prepare: dynamic exponents, almost a hundred parts, elasticity.
+      // These scenes take a second to load: they have dynamic exponents, almost a hundred parts, or
+      // elasticity.
       if (sample.name == "mould.json" || sample.name == "net.json" || sample.name == "rubber_bars.json")
         continue;
       Mutator mutator(sample.name);

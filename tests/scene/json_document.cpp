@@ -1,5 +1,5 @@
 // JSON documents: positions of values, messages about syntax errors, refused documents, the option --set.
-// Numbers I01, I02, ... in test names are those of the stress catalogue in tests/README.md.
+// tests/README.md explains the numbers I01, I02, ... in test names (stress catalogue).
 #include <pliant/scene/json/json_document.h>
 
 #include <sys/stat.h>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the messages about a text; empty if it is valid.
+/// Returns the messages about a text; empty if the text is valid.
 std::string faults(const std::string& text) {
   Diagnostics diagnostics;
   try {
@@ -36,6 +36,7 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
+/// Returns the document with this text, which must be valid.
 JsonDocument sound(const std::string& text) {
   Diagnostics diagnostics;
   JsonDocument document = JsonDocument::parse("s.json", text, diagnostics);
@@ -43,7 +44,7 @@ JsonDocument sound(const std::string& text) {
   return document;
 }
 
-/// Returns "line:column" of the value at a pointer.
+/// Returns "line:column" of the value at a JSON pointer.
 std::string place(const JsonDocument& document, const std::string& pointer) {
   const JsonValue* value = document.at(pointer);
   REQUIRE(value != nullptr);
@@ -52,6 +53,7 @@ std::string place(const JsonDocument& document, const std::string& pointer) {
   return std::to_string(d.line) + ":" + std::to_string(d.column);
 }
 
+/// Returns the messages about an argument of --set for a document with this text.
 std::string set_faults(const std::string& text, const std::string& assignment) {
   JsonDocument document = sound(text);
   Diagnostics diagnostics;
@@ -59,7 +61,7 @@ std::string set_faults(const std::string& text, const std::string& assignment) {
   return diagnostics.text();
 }
 
-/// A temporary folder that the destructor removes.
+/// A temporary folder. The destructor removes the folder.
 struct Folder {
   Folder() : path(fs::temp_directory_path() / ("pliant_json_" + std::to_string(::getpid()))) {
     fs::create_directory(path);
@@ -72,6 +74,7 @@ struct Folder {
   fs::path path;
 };
 
+/// Returns the message of the FileError for a path, and checks its exit code; "no fault" if the file is read.
 std::string read_fault(const std::string& path, int exit_code) {
   Diagnostics diagnostics;
   try {

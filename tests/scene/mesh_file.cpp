@@ -1,4 +1,5 @@
-// Meshes from files: the supported formats (binary glTF excepted), and the errors that a reader must refuse.
+// Meshes are read from files of the supported formats (binary glTF is not tested). Invalid meshes are
+// refused.
 #include "catch.h"
 
 #include <cmath>
@@ -20,7 +21,7 @@ using namespace pliant;
 
 namespace {
 
-/// Returns the error message about a file with this text; empty if the mesh is valid.
+/// Writes a file with this text and returns the error message about its mesh; empty if the mesh is valid.
 std::string error_of(const std::string& name, const std::string& text) {
   const NewFolder folder;
   set_bytes(folder / name, text);
@@ -33,6 +34,8 @@ std::string error_of(const std::string& name, const std::string& text) {
   return "";
 }
 
+/// Return the text of an OBJ or ASCII PLY file with four vertices. faces: lines of the faces; third: third
+/// vertex; vertices: number of vertices in the header.
 std::string obj(const std::string& faces, const std::string& third = "0 1 0") {
   return "v 0 0 0\nv 1 0 0\nv " + third + "\nv 1 1 0\n" + faces;
 }
@@ -78,7 +81,7 @@ TEST_CASE("coincident corners become one vertex, and nearly coincident ones do n
   const MeshFile mesh = read_mesh_file(folder / "a.obj");
   const ObstacleMesh obstacle(mesh.vertices, mesh.triangles);
   CHECK(obstacle.vertices().cols() == 5);
-  // A tiny triangle is not collapsed.
+  // The corners of a tiny triangle stay different vertices.
   CHECK(error_of("tiny.obj", "v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nf 1 2 3\n").empty());
 }
 
@@ -90,7 +93,7 @@ TEST_CASE("invalid meshes are refused with the reason") {
   CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 9\n")), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 7\n")), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 -1\n")), test::has_text("the file is not a mesh: "));
-  // the header announces two more vertices than the file has
+  // The number of vertices in the header is larger by two than the number of vertices in the file.
   CHECK_FALSE(error_of("a.ply", ply(6, "3 0 1 2\n3 2 1 3\n")).empty());
   CHECK_THAT(error_of("a.obj", ""), test::has_text("the file is not a mesh: "));
   CHECK_THAT(error_of("a.obj", "this is text, and nothing else\n"),

@@ -1,5 +1,5 @@
-// The scenes in scenes/ are valid, for the program and for an editor with the JSON Schema. The schema alone
-// refuses every bad scene whose error concerns types, keys or ranges.
+// The program and the JSON Schema accept all scenes in scenes/. The schema refuses every bad scene whose
+// error concerns only types, keys or ranges. Some scenes move as expected.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -36,7 +36,7 @@ std::vector<fs::path> scenes_in(const fs::path& folder) {
   return all;
 }
 
-/// Returns the scene as a JSON value; its is_discarded() is true if the file is not JSON.
+/// Returns a file as a JSON value. Its is_discarded() is true if the file is not JSON.
 nlohmann::json json_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return nlohmann::json::parse(file, nullptr, false);
@@ -73,8 +73,9 @@ using pliant::material_at;
 using pliant::Simulation;
 using pliant::Vec3;
 
-/// Steps a scene until a time (s). After each step the balance error must be below `max_balance` times the
-/// largest kinetic energy so far, or times 1 J if that is larger.
+/// Simulates a scene of scenes/ until a time (s), and calls after_step(simulation, ledger) after each step.
+/// After each step the error of the energy balance must be below `max_balance` times the larger of 1 J and
+/// the largest kinetic energy so far.
 template <class AfterStep>
 void run(const char* name, double until, double max_balance, AfterStep&& after_step) {
   INFO(name);
@@ -95,7 +96,7 @@ void run(const char* name, double until, double max_balance, AfterStep&& after_s
 Vec3<double> world_position(const Simulation& simulation, const pliant::Material<double>& m) {
   return simulation.model().world_point(simulation.state(), 0, m);
 }
-/// Returns the mean width of the first part at a latitude.
+/// Returns the mean width (m) of the first part at a latitude u (rad): the mean of four diameters.
 double width(const Simulation& simulation, double u) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -319,7 +320,8 @@ TEST_CASE("points given by direction or by position are resolved on the rest sha
     const pliant::Part& horn = *point.part;
     return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
   };
-  // The plate is away from the origin, and thinner than the distance between samples on the ray.
+  // The plate does not contain the origin. It is thinner than the distance between the samples with which
+  // the reader searches along a ray.
   pliant::Diagnostics none;
   const auto plate = pliant::parse_scene("s.json", R"json({
     "parts": [{"name": "plate", "shape": "cylinder", "deformations": ["shear", "bend_offset"],
@@ -352,7 +354,7 @@ TEST_CASE("settings without effect give a warning") {
   CHECK(warnings("\"fixed\": true, \"velocity\": [1, 0, 0]") ==
         "s.json:2:28: warning: /parts/0/velocity: [1, 0, 0]; it has no effect, because the part is fixed\n");
   CHECK(warnings("\"orientation\": {\"quaternion\": [0.7071, 0.7071, 0, 0]}").empty());
-  // These twists are finer than the mesh.
+  // The mesh is too coarse for these twists.
   const std::string twist =
       "\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 31.5}, \"resolution\": ";
   CHECK(warnings(twist + "8") ==
@@ -448,8 +450,8 @@ TEST_CASE("the sleep settings are read") {
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {
-  // Types, keys and ranges cannot describe these errors: they concern formulas, the JSON text itself, or
-  // names and numbers that depend on others.
+  // The schema accepts these bad scenes. Their errors concern formulas, the JSON text itself, or names and
+  // numbers that depend on other names and numbers; types, keys and ranges cannot describe these errors.
   const std::vector<std::string> passed{"anchor_not_finite",
                                         "camera_at_its_target",
                                         "coloring_of_unknown_part",

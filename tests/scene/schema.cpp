@@ -1,6 +1,6 @@
-// Records of a scene: their checks and messages, the values for readers, and the JSON Schema generated from
-// them, checked by an independent validator. Numbers I01, I02, ... in test names are those of the stress
-// catalogue in tests/README.md.
+// Records of a scene describe its keys. The tests cover the checks and messages, the values that readers
+// provide, and the JSON Schema, which is generated from the records and checked by an independent validator.
+// tests/README.md explains the numbers I01, I02, ... in test names (stress catalogue).
 #include <pliant/scene/schema/schema.h>
 
 #include <fstream>
@@ -28,7 +28,7 @@ using namespace pliant::schema;
 
 namespace {
 
-/// A small scene record with one field of each kind of type.
+/// Returns a small scene record, which has fields of all kinds of types.
 const Record& scene() {
   static const Record root = [] {
     const Record sphere{"sphere", "A ball.", {optional("radius", number(above(0), "m"), "Radius.", "1")}};
@@ -91,6 +91,7 @@ const Record& scene() {
   return root;
 }
 
+/// Returns the messages about a scene with this text; empty if the scene is valid.
 std::string faults(const std::string& text) {
   Diagnostics diagnostics;
   try {
@@ -102,8 +103,8 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
-/// Return the errors of a scene with one part, spring or solver that has the given members. The part also has
-/// a name, a shape and a mass, and the spring also has a part.
+/// Return the messages about a scene with one part, spring or solver that has the given members. The part
+/// also has a name, a shape and a mass. The spring also has the key "part".
 std::string part_faults(const std::string& members) {
   return faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": 1,\n" + members +
                 "}]}");
@@ -469,7 +470,8 @@ bool valid(const std::string& text) {
   return judge.accepts(nlohmann::json::parse(text));
 }
 
-/// Checks that every property in a schema has a description.
+/// Checks that every property in a schema has a description, and adds the number of properties to
+/// `properties`.
 void check_described(const nlohmann::json& node, int* properties) {
   if (node.is_object() && node.contains("properties") && node["properties"].is_object()) {
     for (const auto& [key, property] : node["properties"].items()) {

@@ -1,4 +1,4 @@
-// A validator for a JSON Schema, by valijson, which is independent of pliant.
+// A validator for a JSON Schema. The library valijson, which is independent of pliant, validates.
 #pragma once
 
 #include <string>

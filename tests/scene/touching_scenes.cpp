@@ -1,6 +1,6 @@
-// The scenes with contact, run to their end with their own step. No step has an overlap above a thousandth of
-// the size of the smaller part, closed joints stay closed in every impact, and the figures of the paper show
-// the described motion.
+// The scenes with contact run to their end with their own step. After each step no overlap exceeds a
+// thousandth of the size of the smaller part. Joints that have closed stay closed in every impact. The scenes
+// that show figures of the paper move as described there.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -34,8 +34,9 @@ namespace {
 const std::vector<std::string> kRigid{"bowl", "dominoes", "slope", "tower"}, kSoft{"balloons", "springboard"},
     kJointed{"dragonfly", "snowman"};
 
-/// Runs a scene to its end, and checks the overlaps after every step. Returns how often a contact started for
-/// the first time, or after more than 50 ms without contact.
+/// Runs a scene to its end, and checks the overlaps after every step. after_step: called with the simulation
+/// after every step. Returns the number of times at which a contact starts after 50 ms without any contact;
+/// the first contact always counts.
 template <class AfterStep>
 int run_file(const std::string& file, const std::vector<std::string>& overrides, AfterStep&& after_step) {
   CAPTURE(file);
@@ -72,11 +73,12 @@ int number_of(const Simulation& simulation, const std::string& part) {
 const PartModel& model_of(const Simulation& simulation, const std::string& part) {
   return simulation.model().parts()[static_cast<std::size_t>(number_of(simulation, part))];
 }
-/// Returns the global parameters and local displacements of a part.
+/// Returns the dynamic global parameters of a part, followed by the coordinates of its local deformation.
 VecX<double> deformation(const Simulation& simulation, const std::string& part) {
   const PartModel& model = model_of(simulation, part);
   return simulation.state().q.segment(model.q0 + 7, model.n_s + model.n_d());
 }
+/// Returns the bend angle of a part, rad. Throws std::out_of_range if this parameter is not dynamic.
 double bend(const Simulation& simulation, const std::string& part) {
   const PartModel& model = model_of(simulation, part);
   for (int k = 0; k < model.n_s; ++k)
@@ -87,7 +89,7 @@ double bend(const Simulation& simulation, const std::string& part) {
 double height(const Simulation& simulation, const std::string& part) {
   return simulation.state().q[model_of(simulation, part).q0 + 2];
 }
-/// The smallest and largest value of a number.
+/// The smallest and the largest of the noted numbers.
 struct Extent {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   void note(double x) {
@@ -136,17 +138,16 @@ TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[conta
       out = std::max(out, c.head<2>().norm());
     }
   });
-  const double scale = std::cbrt(100 / 30.0);  // scale of the bowl, see pour.sh
+  const double scale = std::cbrt(100 / 30.0);  // scale of the mesh of the bowl, as in scenes/pour.sh
   CHECK(height.smallest > 0);
   CHECK(height.largest < 0.55 * scale);
   CHECK(out < 0.55 * scale);
 }
 
 TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
-  constexpr double kImpact = 0.05, kLast = 12.8;  // longest impact, start of the last second, s
+  constexpr double kImpact = 0.05, kLast = 12.8;  // longest impact, start of the last second; both in s
   double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0;
-  VecX<double>
-      undeformed;  // parameters and displacements of the middle balloon at the last time without contact
+  VecX<double> undeformed;  // deformation() of the middle balloon at the last time without contact
   const int contact_starts = run_scene("balloons", [&](Simulation& simulation) {
     const double t = simulation.time();
     const VecX<double> now = deformation(simulation, "balloon5");
@@ -200,7 +201,7 @@ TEST_CASE("the dragonfly flaps its wings, which bend, and the impact bends its b
         auto turn = [&](const std::string& part) {
           return simulation.model().orientation(simulation.state(), number_of(simulation, part));
         };
-        // The angle of the wing about the long axis (z) of the body, measured from the y axis.
+        // The angle (rad) of the wing about the long axis (z) of the body, from the y axis or the -y axis.
         const Eigen::Vector3d along = turn("body").conjugate() * (turn(wings[i]) * Eigen::Vector3d::UnitZ());
         flaps[i].note(std::atan2(along.x(), std::abs(along.y())));
         bend_range[i].note(bend(simulation, wings[i]));
@@ -233,7 +234,7 @@ TEST_CASE("closed joints of the dragonfly and the snowman stay closed in every i
         if (!closed[j]) continue;
         INFO(simulation.model().joints()[j].joint->name());
         REQUIRE(modes[j] == JointMode::closed);
-        // The requirement is a gap below 1e-6 of the length of the body. A gap of 5e-14 m has been observed.
+        // The scenes need a gap below 1e-6 of the length of a part. The largest observed gap is 5e-14 m.
         REQUIRE(simulation.model().gap(simulation.state(), static_cast<int>(j)) <= 1e-12);
       }
     });

@@ -1,4 +1,4 @@
-// The triangle mesh of a part for contact search, and its edges.
+// The triangle mesh of a part for contact search, and the edges of this mesh.
 #include <pliant/collision/mesh/contact_mesh.h>
 
 #include <map>
@@ -9,11 +9,10 @@
 namespace pliant {
 
 namespace {
-/// Edges along an eighth of a great circle, for the mesh of a part without nodes.
+/// Resolution of the mesh of a part without nodes; Surface explains the resolution for balls and tori.
 constexpr int kMeshResolution = 6;
-/// The reach and the speed of a part without nodes and with dynamic parameters are estimated from a coarse
-/// mesh with kCoarseMeshEdges edges along an eighth of a great circle. The estimates are multiplied by
-/// kCoarseMeshMargin.
+/// reach() and speed() of a part without nodes and with dynamic parameters use the vertices of a coarse mesh
+/// with the resolution kCoarseMeshEdges, and multiply the largest value by kCoarseMeshMargin.
 constexpr int kCoarseMeshEdges = 2;
 constexpr double kCoarseMeshMargin = 1.1;
 }  // namespace

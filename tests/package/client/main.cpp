@@ -1,5 +1,5 @@
-// A user's program. The warning flags of pliant must not reach the program: they would report its unused
-// parameters. The options for the layout of Eigen's types and for rounding must reach the program.
+// A user's program. The warning flags of pliant must not reach this program; they would report its unused
+// parameters. The option for the layout of Eigen's types must reach this program.
 #include <cmath>
 
 #include <pliant/math/scalar/dual.h>
@@ -10,7 +10,7 @@
 #endif
 
 int main(int argc, char** argv) {
-  // d/dx of x sin x at 2, and a value of a spline through key frames.
+  // The results are the derivative of x sin x at x = 2, and a value of a spline through key frames.
   using Dual = pliant::Dual<1>;
   const Dual x = Dual::variable(2.0, 0);
   const Dual y = x * sin(x);
