@@ -121,14 +121,14 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
       // unit vector across the edge, away from the left triangle
       const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));
       const Vec3<double> slope(xx * middle[0] + xy * middle[1], yy * middle[1] + xy * middle[0], 0);
-      const auto normal_angle = [&](int t) {  // rotation from the normal of the triangle to that of the edge;
-                                              // a normal is (-slope, 1)
-        const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
-        Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
-                             .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
-        m /= m[2];
-        return -slope.dot(across) - m.dot(across);
-      };
+      const auto normal_angle =
+          [&](int t) {  // rotation of the mid-edge normal relative to the triangle's; a normal is (-slope, 1)
+            const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
+            Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
+                                 .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
+            m /= m[2];
+            return -slope.dot(across) - m.dot(across);
+          };
       const double left = normal_angle(edges[e].left);
       phi[static_cast<Eigen::Index>(e)] =
           edges[e].inside() ? 0.5 * (left + normal_angle(edges[e].right)) : left;
