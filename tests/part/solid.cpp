@@ -58,8 +58,7 @@ struct Geometry {
 /// Returns the volume of a mesh with nodes at s, and the smallest quality and Jacobian of its elements. The
 /// quality of an element with the volume V is 12 (3 V)^(2/3) / (sum of the squared edge lengths), or 0 if V
 /// is not positive. A regular tetrahedron has the quality 1. The Jacobian of a quadratic element is its
-/// smallest determinant at quadrature points / its mean determinant; for other elements it is infinite or
-/// NaN.
+/// smallest determinant at quadrature points / its mean determinant; for linear elements it is infinite.
 Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   Geometry g;
   for (Eigen::Index t = 0; t < solid.elements().cols(); ++t) {
