@@ -23,7 +23,7 @@ double signed_power(double x, double e) {
   return std::copysign(std::pow(std::abs(x), e), x);
 }
 
-// A superellipsoid of 2 * columns * (rows - 1) triangles, with its poles as single vertices.
+// Returns a superellipsoid of 2 * columns * (rows - 1) triangles, with one vertex at each pole.
 pliant::TriangleMesh superellipsoid(int rows, int columns, double eps1, double eps2,
                                     const Eigen::Vector3d& a) {
   const int rings = rows - 1, poles = rings * columns;

@@ -20,7 +20,8 @@ void rigid(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
 }
-/// A rigid part with a frozen deformation that is the identity. It must not cost more than rigid().
+/// Adds a rigid part with a frozen deformation that is the identity. It must not cost more than the part of
+/// rigid().
 void rigid_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -30,8 +31,8 @@ void three(MultiBody& body, const std::string& name) {
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
-/// Three parameters, and frozen deformations that are the identity. The part must cost at most 5 % more than
-/// three().
+/// Adds a part with three parameters and frozen deformations that are the identity. It must cost at most 5 %
+/// more than the part of three().
 void three_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Taper, Bend>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -54,8 +55,8 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
-/// Dynamic exponents over their whole ranges. The shape of every ring of the surface changes, so the full
-/// quadrature rule is needed.
+/// Adds a part with dynamic exponents over their whole ranges. The shape of every ring of the surface
+/// changes, so the full quadrature rule is needed.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});

@@ -184,7 +184,8 @@ class ErrorMeter {
   double velocity_error(const Outcome& a, const Outcome& b) const {
     return scale_->norm(VecX<double>::Zero(a.end.q.size()), a.end.v - b.end.v, b.end.v);
   }
-  /// Returns the largest difference of joint forces, relative to the largest force of b; NaN without forces.
+  /// Returns the largest difference of joint forces, relative to the largest force of b; NaN if b has no
+  /// force.
   static double force_error(const Outcome& a, const Outcome& b) {
     const double largest = b.lambda.size() > 0 ? b.lambda.cwiseAbs().maxCoeff() : 0;
     return largest > 0 ? (a.lambda - b.lambda).cwiseAbs().maxCoeff() / largest : kNone;
@@ -315,8 +316,8 @@ class Rounds {
   Rounds(std::string folder, bool again, std::function<bool(const std::string&)> is_measured)
       : folder_(std::move(folder)), again_(again), is_measured_(std::move(is_measured)) {}
 
-  /// Opens a file of the folder for writing and copies the earlier rows of problems that are not measured
-  /// now.
+  /// Opens a file of the folder for writing. If `again` is true, copies the earlier rows of problems that are
+  /// not measured now.
   std::unique_ptr<bench::TableFile> open(const char* name, const std::string& head) const {
     const std::string path = folder_.empty() ? "" : folder_ + name;
     const auto rows = again_ ? bench::read_rows(path, head) : decltype(bench::read_rows(path, head))();
@@ -353,13 +354,13 @@ class Rounds {
 };
 
 /// Compares the cost of auto with that of the best single method at each error level. If two successive
-/// levels have equal ratios, because the same two runs reach both levels, the second level is ignored.
+/// levels have equal ratios, because the same two runs qualify for both levels, the second level is ignored.
 class AutomaticChoice {
  public:
   explicit AutomaticChoice(const Rounds& rounds)
       : file_(rounds.open("precision_auto.csv",
                           "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n")) {}
-  /// Adds the cost of a method at an error. cpu_ms: NaN if the method does not reach this error.
+  /// Adds the cost of a method at an error. cpu_ms: CPU ms per simulated second; NaN if no run qualifies.
   void add(const std::string& method, double error, double cpu_ms) {
     if (std::isnan(cpu_ms)) return;
     if (method == kAutomatic)
@@ -409,7 +410,7 @@ class AutomaticChoice {
     return text;
   }
 
-  std::map<double, double> automatic_;  // CPU ms of auto at each error
+  std::map<double, double> automatic_;  // CPU ms of auto per simulated s, at each error
   std::map<double, Best, std::greater<>> best_;
   double sum_ = 0, max_ratio_ = 0;
   int count_ = 0;

@@ -90,7 +90,7 @@ TEST_CASE("both solvers give equal accelerations, forces and derivatives", "[joi
     augmented.dynamics().accelerations(0.1, state.q, state.v, state, other);
     INFO(backend.name);
     CHECK((work.v_dot - other.v_dot).norm() <= 1e-10 * work.v_dot.norm());
-    // Forces agree where they are unique: two equal joints may share their force in any way.
+    // Two equal joints ("loop" and "again") may share their force in any way. The other forces are unique.
     for (int j = 0; j < static_cast<int>(one.joints().size()); ++j) {
       const std::string& name = blocks.model().joints()[static_cast<std::size_t>(j)].joint->name();
       if (name == "loop" || name == "again") continue;
@@ -165,7 +165,8 @@ TEST_CASE("extreme mass ratios: the solvers agree after iterative refinement", "
       lightest = body.parts()[0]->total_mass();
     }
     INFO(backend.name);
-    // The bound is 100 eps lambda / m_min, with the rounding eps of a double.
+    // The bound is 1e-10 m/s^2 plus 100 eps lambda / m, with the rounding eps of a double, the largest joint
+    // force lambda and the mass m of the first link, a light one.
     CHECK((v_dot[0] - v_dot[1]).lpNorm<Eigen::Infinity>() <= 1e-10 + 100 * 2.2e-16 * largest / lightest);
   }
 }

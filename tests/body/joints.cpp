@@ -1,4 +1,4 @@
-// Laws that every joint formula obeys, and the accelerations of parts with joints.
+// Laws of every joint formula, and the accelerations of parts with joints.
 #include "catch.h"
 
 #include <Eigen/LU>
@@ -17,8 +17,8 @@ using test::Draws;
 
 namespace {
 
-/// Compares C, C_dot, bias and C_x of a joint with finite differences, for points that move as x + v t + a
-/// t^2 / 2.
+/// Compares C, C_dot, bias, C_x and gap() of a joint with finite differences, for points that move as
+/// x + v t + a t^2 / 2. The bias is then C_ddot, because a is the acceleration of the points.
 template <class F>
 void check_laws(const F& formula, std::uint64_t seed) {
   constexpr int kPoints = F::first + F::second;
@@ -68,8 +68,8 @@ void check_laws(const F& formula, std::uint64_t seed) {
   }
 }
 
-/// Adds two deforming parts and a rigid one in a closed loop, which is also joined to a fixed part, to a
-/// moving anchor and, by a string, to the world.
+/// Adds two deforming parts and a rigid one in a closed loop. The loop is also connected to a fixed part, to
+/// a moving anchor and, by a string, to the world.
 void loop(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
@@ -116,7 +116,8 @@ TEST_CASE("accelerations: C_ddot + 2 alpha C_dot + beta^2 C = 0 for every row, i
     Workspace<double> work;
     const double t = 0.3;
     dynamics.accelerations(t, state.q, state.v, state, work);
-    // Reference: the central difference of C_dot along q + e q_dot, v + e v_dot with these accelerations.
+    // C_ddot is the central difference of C_dot along q + e q_dot and v + e v_dot, with the accelerations
+    // v_dot.
     VecX<double> q_dot;
     auto C_dot = [&](double e) {
       Workspace<double> scratch;

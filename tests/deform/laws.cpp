@@ -1,5 +1,5 @@
-// Laws of every global deformation in the list: identity, inverse, derivatives, determinants, and the kernel
-// that applies a link of a chain.
+// Laws of every global deformation in AllDeforms (deform/all_deforms.h): identity, inverse, derivatives,
+// determinants, and the kernel that applies a link of a chain.
 #include "catch.h"
 
 #include <cmath>
@@ -42,8 +42,9 @@ Numbers<Deform> draw(Draws& draws) {
   return b;
 }
 constexpr double kHalfHeight = 1.7;
-/// Returns a random position in a solid that is so slim that no bend in the range folds it: the determinant
-/// 1 - k r of the bend is above 0.4.
+/// Returns a random position in a solid that is so slim that no bend in the range folds it. The determinant
+/// of the bend is 1 - k r, with the curvature k and the coordinate r along the direction of the bend. It is
+/// above 0.4.
 Vec3<double> body_point(Draws& draws) {
   return {draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), draws.uniform(-kHalfHeight, kHalfHeight)};
 }
@@ -59,7 +60,8 @@ Mat3<double> gradient(const Vec3<double>& p, double h, const Numbers<Deform>& b)
   return F;
 }
 
-/// Evaluates T as a function of all its arguments (p, h, b).
+/// Returns the deformed position. all: the arguments of Deform::apply() in one vector, that is the position
+/// p, the half height h and the parameters b.
 template <class Deform, class T>
 Vec3<T> apply_to_all(const Vec<T, 4 + deform_size<Deform>>& all) {
   return Deform::template apply<T>(Vec3<T>(all.template head<3>()), all[3],
@@ -168,7 +170,7 @@ TEST_CASE("N11: a bend and its derivatives are continuous at zero bend", "[defor
       using D = Dual<2>;
       const Vec<D, 2> b{D::variable(angle, 0), D::variable(0.0, 1)};
       const Vec3<D> result = Bend::apply<D>(p.cast<D>(), D(h), b);
-      // Power series in k of r cos kz + (1 - cos kz)/k and sin(kz)/k - r sin kz.
+      // Power series of r cos kz + (1 - cos kz)/k and of sin(kz)/k - r sin kz in the curvature k.
       const double across = r + k * z * z / 2 - k * k * r * z * z / 2 - k * k * k * z * z * z * z / 24;
       const double along = z - k * r * z - k * k * z * z * z / 6;
       const double across_slope = z * z / 2 - k * r * z * z - k * k * z * z * z * z / 8;
@@ -207,7 +209,8 @@ TEST_CASE("N11: the inverse of a bend is valid up to the ends of its range, half
         const Vec3<double> result = Bend::apply<double>(p, kHalfHeight, b);
         Vec3<double> back = Bend::inverse<double>(result, kHalfHeight, b);
         INFO("angle " << angle << " zeta " << zeta << " p " << p.transpose());
-        // With a bend of half a turn each way, the two ends coincide.
+        // If the angle is pi, each half bends by half a turn. The two ends then coincide, so that the inverse
+        // does not determine the sign of z.
         if (std::abs(angle) == kPi && std::abs(zeta) == 1) back[2] = std::copysign(back[2], zeta);
         CHECK((back - p).norm() <= 1e-14);
       }
@@ -243,8 +246,10 @@ TEST_CASE("determinants of the deformations agree with closed forms", "[deform]"
   }
 }
 
-// The kernel that applies a link of a chain: J <- [F J + T_h dh/da, G_T], and the rates s1 and s2. The
-// incoming position, the half height and the parameters of the link change in time.
+// The kernel that applies a link of a chain, the map T(p, h, b) of the position p, the half height h and the
+// parameters b: J <- [F J + T_h dh/da, G_T]. F, T_h and G_T are the derivatives of T by p, h and the dynamic
+// b; a are the parameters of the shape. s1 and s2 are the first and second time derivatives of the position
+// (jet.h). p, h and b change in time.
 TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", AllDeforms) {
   constexpr int K = deform_size<TestType>;
   Draws draws(6);

@@ -1,5 +1,6 @@
-// Bending by mid-edge normals: exact for constant curvature, zero for rigid motion, convergent on irregular
-// meshes of plates and rolled sheets, and the checks of energy_laws.h.
+// Bending by mid-edge normals. The energy is exact for constant curvature and does not change in rigid
+// motion. It converges on irregular meshes of plates and of a rolled sheet, and on spheres. It passes the
+// checks of energy_laws.h. phi is the rotation of the normal of an edge (bending.h).
 #include <pliant/local/shell/bending.h>
 
 #include "catch.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr Sheet kSheet{7e4, 0.3, 0.02};
 constexpr double kMass = 54;  // kg/m^2
 
-/// Local coordinates: those of the nodes, followed by the own coordinates of the energy.
+/// Returns local coordinates: those of the nodes, followed by the own coordinates of the energy (phi).
 VecX<double> with_own_coordinates(const VecX<double>& nodal, const VecX<double>& own) {
   VecX<double> x(nodal.size() + own.size());
   x << nodal, own;
@@ -49,7 +50,8 @@ void check_laws() {
                           random_vector(draws, 3 * large.n_nodes() + more.own_inertia().size(), 0.005));
 }
 
-/// Returns x with the phi for which the edge moments vanish; the nodes are fixed.
+/// Returns x with the values of phi for which the moments of all edges are zero. Coordinates of nodes do not
+/// change.
 VecX<double> with_balanced_edges(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_nodes) {
   const Eigen::Index own = x.size() - 3 * n_nodes;
   const Eigen::SparseMatrix<double> K = stiffness(bending, x).bottomRightCorner(own, own);
@@ -111,8 +113,8 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Sheet sheet{7e4, nu, 0.02};
     const LinearBending bending(mesh, sheet, kMass);
     const std::vector<ShellEdge> edges = shell_edges(mesh);
-    // phi: the mean slope of the triangles at an edge, across this edge, minus the slope of w at the middle
-    // of the edge.
+    // phi of an edge: the mean slope of its triangles in the direction across the edge, minus the slope of w
+    // in this direction at the middle of the edge.
     VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const Vec3<double> p = mesh.X().row(edges[e].a), q = mesh.X().row(edges[e].b), middle = 0.5 * (p + q);
@@ -140,7 +142,8 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Eigen::Index n = mesh.n_nodes();
     for (std::size_t e = 0; e < edges.size(); ++e)
       if (edges[e].inside()) CHECK(std::abs(f[3 * n + static_cast<Eigen::Index>(e)]) <= 1e-12 * largest);
-    // A node opposite to a boundary edge rotates the normal there; no other triangle balances this moment.
+    // Inner nodes have no force, except nodes opposite to a boundary edge: their triangle exerts a moment on
+    // this edge, and no second triangle balances the moment.
     std::vector<bool> across(static_cast<std::size_t>(n), false);
     for (const ShellEdge& edge : edges)
       if (!edge.inside())
@@ -173,7 +176,8 @@ TEST_CASE("bending: an irregular sheet rolled to half a cylinder has the energy 
     const auto roll = [&](const Vec3<double>& X) {
       return Vec3<double>(r * std::sin(X[0] / r), X[1], r * std::cos(X[0] / r));
     };
-    // Angle from the normal of a triangle to that of the cylinder at the middle of the edge, about the edge.
+    // Returns the angle about an edge from the normal of a triangle to the normal of the cylinder at the
+    // middle of the edge, rad.
     const auto normal_angle = [&](int t, int corner) {
       const std::array<Vec3<double>, 3> X{mesh.corner(t, corner), mesh.corner(t, (corner + 1) % 3),
                                           mesh.corner(t, (corner + 2) % 3)};
@@ -225,8 +229,8 @@ TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sande
 
 namespace {
 
-/// Deflection of a square plate with side 1 and D = 1 under a load of 1 for each unit of area: in the middle,
-/// and the integral over the plate.
+/// Deflection of a square plate under a load of 1 per area: in the middle, and its integral over the plate.
+/// The side of the plate and its bending stiffness D are 1.
 struct Deflection {
   double middle, integral;
 };
@@ -242,8 +246,9 @@ Deflection plate(int n, bool clamped, std::uint64_t seed) {
   const std::vector<ShellEdge> edges = shell_edges(mesh);
   const Eigen::Index nodes = mesh.n_nodes(), own = static_cast<Eigen::Index>(edges.size());
   const auto on_boundary = [&](Eigen::Index i) { return X.row(i).cwiseAbs().maxCoeff() > 0.4999; };
-  // Free coordinates: z of inner nodes, and phi; a clamped edge has phi = -z/height, where z and height are
-  // those of the opposite corner.
+  // Free coordinates: z of inner nodes, and phi of all edges that are not clamped. A clamped edge has
+  // phi = -z/height, where z is the displacement of the opposite corner and height its distance from the
+  // edge.
   std::vector<Eigen::Index> column(static_cast<std::size_t>(nodes), -1);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index n_free = 0;

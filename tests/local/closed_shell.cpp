@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kRadius = 2.5, kE = 2e11, kDensity = 7800, kThickness = 0.1;
 
-/// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of degree n, lower branch; n = 0: breathing (uniform radial
-/// motion).
+/// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of the lower branch of degree n. n = 0 is breathing, that
+/// is uniform radial motion.
 double membrane_value(int n, double nu) {
   if (n == 0) return 2 * (1 + nu);
   const double b = n * n + n + 1 + 3 * nu;
@@ -33,7 +33,7 @@ double unit(double nu) {
   return kE / (kRadius * kRadius * kDensity * (1 - nu * nu));
 }
 
-/// Mesh and masses of a shell.
+/// The mesh of a shell, and the mass of each local coordinate, kg.
 struct Shell {
   ShellMesh mesh;
   VecX<double> M;
@@ -42,7 +42,7 @@ Shell icosphere_shell(int levels) {
   const ShellMesh mesh = icosphere(levels, kRadius);
   return {mesh, kDensity * kThickness * thrice(sphere_areas(mesh))};
 }
-/// Returns the mesh of a part and the masses of its nodes.
+/// Returns the mesh of a spherical part, and the masses of its local coordinates.
 Shell part_shell(int resolution) {
   Primitive<Sphere> ball("ball", kDensity * kThickness);
   LocalSettings settings;
@@ -57,7 +57,7 @@ Sparse membrane_stiffness(const Shell& shell, double nu) {
   return stiffness(LinearMembrane(shell.mesh, {kE, nu, kThickness}), VecX<double>::Zero(shell.M.size()));
 }
 
-/// Returns the harmonic fields of the degrees next to n.
+/// Returns the harmonic fields of the degrees n + 1 and n - 1, or of n + 1 only if n <= 2.
 MatX<double> neighbours(const ShellMesh& mesh, int n) {
   const MatX<double> above = harmonic_fields(mesh, n + 1), below = harmonic_fields(mesh, std::max(n - 1, 2));
   if (n <= 2) return above;
@@ -77,7 +77,8 @@ double mode_error(const Shell& shell, int n, double nu) {
 
 constexpr std::array<int, 6> kDegrees{0, 2, 3, 4, 5, 6};
 using Errors = std::array<double, kDegrees.size()>;
-/// Returns the relative errors of Omega of all degrees, from the exact fields, smoothed on the mesh.
+/// Returns the relative errors of Omega of the degrees kDegrees. The frequencies are those of the exact
+/// fields, smoothed on the mesh (SmoothedFields).
 Errors field_errors(const Shell& shell, double nu) {
   const Sparse K = membrane_stiffness(shell, nu), M(shell.M.asDiagonal());
   Errors errors;
@@ -94,8 +95,8 @@ Errors field_errors(const Shell& shell, double nu) {
 constexpr std::array<double, 11> kBending{0,      0,      237.25, 282.85, 305.24, 324.17,
                                           346.76, 376.68, 416,    465.75, 526.20};
 
-/// Returns relative errors of the frequencies of degrees n = 2 .. 10. A frequency is the square root of the
-/// mean omega^2 of 2n + 1 modes.
+/// Returns the relative errors of the frequencies of a shell with bending. Index: degree n from 2 to 10;
+/// entries 0 and 1 are zero. A frequency is the square root of the mean omega^2 of 2n + 1 modes.
 std::array<double, 11> bending_errors(int levels) {
   const Shell shell = icosphere_shell(levels);
   const Sheet sheet{kE, 0.3, kThickness};
@@ -125,9 +126,10 @@ double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// Returns whether the modes of the mesh near the frequency of degree n belong to this degree only. From n =
-/// 4 on, modes of the mesh with short waves have frequencies between those of this degree. For nu = 0,
-/// torsion of degree 2 has the frequency of breathing.
+/// Returns whether the modes of the mesh near the frequency of degree n belong to this degree only. This is
+/// false for n >= 4, because modes of the mesh with short waves have frequencies between those of this
+/// degree. It is false for breathing with nu = 0, because torsion of degree 2 then has the frequency of
+/// breathing.
 bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }

@@ -41,7 +41,8 @@ inline Eigen::SparseMatrix<double> stiffness(const NodalEnergy& energy, const Ve
   return K;
 }
 
-/// Checks force and derivative; h: a step for which differences of tenth order are exact to rounding.
+/// Checks the force and its derivative along random directions. h: step for which differences of tenth order
+/// are exact to rounding.
 inline void check_slopes(const NodalEnergy& energy, const VecX<double>& x, double h) {
   Draws draws(7);
   const VecX<double> f = force(energy, x);
@@ -68,8 +69,8 @@ inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   CHECK((K - Eigen::SparseMatrix<double>(K.transpose())).norm() <= 1e-13 * K.norm());
 }
 
-/// Checks that threads do not change a bit. The mesh needs more elements than one range of for_ranges has
-/// (element_batches.h).
+/// Checks that the number of threads does not change a bit of the results. The mesh must have more elements
+/// than one range of for_ranges() (local/ranges.h), otherwise a single thread computes all elements.
 inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   Draws draws(9);
   const VecX<double> dx = random_vector(draws, x.size());
@@ -82,8 +83,8 @@ inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   }
 }
 
-/// Checks that the bound is at least the largest omega^2 and at most `times` as large. The matrix is dense,
-/// so that the mesh must be small.
+/// Checks that frequency_bound() is at least the largest omega^2 at x with the masses M, and at most `times`
+/// this value. The matrix is dense, so the mesh must be small.
 inline void check_bound(const NodalEnergy& energy, const VecX<double>& x, const VecX<double>& M,
                         double times) {
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();

@@ -1,4 +1,5 @@
-// The linear membrane: exact for constant strain, zero for small rotations, and the checks of energy_laws.h.
+// The linear membrane: its energy is exact for constant strain and zero for small rotations. It passes the
+// checks of energy_laws.h.
 #include <pliant/local/shell/linear_membrane.h>
 
 #include <Eigen/SparseCholesky>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr Sheet kSheet{7e4, 0.3, 0.02};
 
-/// Returns the largest force at the inner nodes of a sheet a x b.
+/// Returns the largest |component| of the forces f at the inner nodes of a sheet a x b.
 double inside(const ShellMesh& mesh, const VecX<double>& f, double a, double b) {
   const Eigen::Index n = mesh.n_nodes();
   double largest = 0;

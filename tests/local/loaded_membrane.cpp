@@ -18,8 +18,8 @@ using namespace pliant::test;
 
 namespace {
 
-/// The rectangle -pi/2 <= u <= pi/2 in `rows` strips, -pi <= v < pi in `columns`, periodic in v, with one
-/// node at each pole.
+/// Returns a mesh of the rectangle -pi/2 <= u <= pi/2, -pi <= v < pi, with `rows` strips along u and
+/// `columns` along v. The mesh is periodic in v and has one node at each pole.
 ParameterMesh parameter_grid(int rows, int columns) {
   ParameterMesh mesh{(rows - 1) * columns + 2, {}, {}};
   mesh.triangles.resize(3, 2 * rows * columns);
@@ -46,7 +46,7 @@ ParameterMesh parameter_grid(int rows, int columns) {
   return mesh;
 }
 
-/// Returns nodal masses for the density mu in (u, v); each node receives a third of the mass of its
+/// Returns the masses of the nodes for the mass mu per du dv. Each node has a third of the mass of its
 /// triangles.
 VecX<double> parameter_masses(const ParameterMesh& mesh, double mu) {
   VecX<double> M = VecX<double>::Zero(mesh.n_nodes);
@@ -58,7 +58,7 @@ VecX<double> parameter_masses(const ParameterMesh& mesh, double mu) {
   return M;
 }
 
-/// Returns all omega^2 of the displacement along x.
+/// Returns all omega^2 of the displacement along x, in rising order. M: masses of the nodes.
 VecX<double> spectrum(const NodalEnergy& energy, const VecX<double>& M) {
   const Eigen::Index n = M.size();
   const Eigen::SparseMatrix<double> K = stiffness(energy, VecX<double>::Zero(3 * n)).topLeftCorner(n, n);
@@ -67,8 +67,8 @@ VecX<double> spectrum(const NodalEnergy& energy, const VecX<double>& M) {
   return symmetric_eigenvalues(scaled);
 }
 
-/// Returns the lowest omega^2 of the displacement along x, for the law "loaded_membrane_uv" on the mesh of a
-/// part, with the mass mu du dv.
+/// Returns the lowest `wanted` omega^2 of the displacement along x, for the law "loaded_membrane_uv" on the
+/// mesh of a part, with the mass mu du dv.
 VecX<double> part_spectrum(const char* shape, int resolution, double w0, double w1, double mu, int wanted) {
   const auto part = make_part("skin", shape, {}, 1);
   LocalSettings settings;
@@ -188,7 +188,7 @@ TEST_CASE("loaded membrane: derivatives, matrix, threads, frequency bound, trans
     check_slopes(on_grid, y, 0.1);
     check_stiffness(on_grid, y);
     check_bound(on_grid, y, thrice(parameter_masses(grid, 1)), 2);
-    // A translation costs only the energy of the size of the displacement.
+    // A translation d has no gradient, so that its energy is w0/2 times the integral of |d|^2 over u and v.
     const double cost = LoadedMembrane(grid, {0.4, 3, size}).energy(VecX<double>::Ones(y.size()));
     CHECK(cost == Approx(0.5 * 0.4 * 3 * 2 * kPi * kPi).epsilon(1e-12));
   }

@@ -41,7 +41,7 @@ void check_laws(double nu) {
   check_bound(membrane, X, M, 2);
   check_bound(membrane, x, M, 2);
   check_threads(more, rest(large) + random_vector(draws, 3 * large.n_nodes(), 0.005));
-  // Near rest the law is the linear membrane.
+  // At rest, the derivative of the force is that of the linear membrane.
   const VecX<double> dx = random_vector(draws, X.size());
   const VecX<double> linear = force(LinearMembrane(small, sheet), dx);
   CHECK((derivative(membrane, X, dx) - linear).norm() <= 1e-12 * linear.norm());

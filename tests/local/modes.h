@@ -19,7 +19,8 @@ namespace pliant::test {
 
 /// Returns the mean omega^2 of the `count` modes with omega^2 < 2 `near` that have the largest components in
 /// the space of U, after inverse iterations of U and V at omega^2 = `near`. V contains fields of neighbouring
-/// modes, which would mix with the wanted modes.
+/// modes, which would mix with the wanted modes. Throws std::out_of_range if there are fewer than `count`
+/// modes.
 inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double near,
                             const MatX<double>& U, const MatX<double>& V, int count) {
   Eigen::SparseMatrix<double> A = K;
@@ -47,8 +48,9 @@ inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<dou
   return sum / count;
 }
 
-/// Returns fields of 2n + 1 surface harmonics Y of degree n on the sphere: for each Y, Y along the normal,
-/// then grad Y / n. Y = Re (a.X)^n with a complex vector a, a.a = 0. For n = 0, the only field is the normal.
+/// Returns fields of 2n + 1 random surface harmonics Y of degree n on the sphere. For each Y, one column is Y
+/// along the normal and the next one is grad Y / n. Y is Re (a.N)^n with the unit normal N and a random
+/// complex vector a, a.a = 0. For n = 0, the only column is the normal.
 inline MatX<double> harmonic_fields(const ShellMesh& mesh, int n) {
   Draws draws(11);
   const int count = 2 * n + 1;

@@ -1,4 +1,5 @@
-// Nearly incompressible solids: plain elements lock, elements with averaged dilatation do not.
+// Nearly incompressible solids: plain elements lock (are too stiff); elements with averaged dilatation do
+// not.
 #include "catch.h"
 
 #include <cmath>
@@ -26,7 +27,8 @@ SolidMesh sphere(int resolution) {
   return test::solid_mesh("sphere", {}, resolution, test::order_of(Element::n_nodes));
 }
 
-/// Returns omega r / c_t of the spheroidal modes of order 2 of a free sphere (Lamb 1882).
+/// Returns omega r / c_t of the lowest spheroidal mode of degree 2 (0S2) of a free sphere with the radius r,
+/// the first root of its equation (Lamb 1882). c_t: speed of shear waves.
 double lamb_S2(double nu) {
   const double slow = std::sqrt((1 - 2 * nu) / (2 * (1 - nu)));
   auto j = [](unsigned l, double x) { return std::sph_bessel(l, x); };
@@ -43,8 +45,8 @@ double lamb_S2(double nu) {
   return low;
 }
 
-/// Returns the largest relative error of the five spheroidal modes of order 2 (S2). After the six rigid
-/// motions the lowest modes are the five torsional modes of order 2 (T2), then S2.
+/// Returns the largest relative error of the frequencies of the five lowest spheroidal modes of degree 2
+/// (0S2). After the six rigid motions, the lowest modes are five torsional modes of degree 2 (T2), then 0S2.
 template <class Element>
 double S2_error(const NodalEnergy& energy, const SolidMesh& mesh, double nu) {
   const test::Sparse M = Element::n_nodes == 4
@@ -93,9 +95,9 @@ TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion,
   const MatX<double> K = test::stiffness_at(energy, x), K_plain = test::stiffness_at(plain, x);
   CHECK((K * x + f).norm() <= 1e-13 * f.norm());
   CHECK((K - K.transpose()).norm() <= 1e-14 * K.norm());
-  // The stiffness is not larger in any direction.
+  // In no direction is the stiffness larger than that of plain elements.
   CHECK(symmetric_eigenvalues(K_plain - K).minCoeff() >= -1e-12 * K.norm());
-  // Uniform strains, and rigid motion, have the energy of plain elements.
+  // A uniform strain has the energy of plain elements, and a small rigid motion causes no force.
   Mat3<double> A;
   A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
   const VecX<double> uniform = test::affine(mesh.rest, A, {1, 2, 3});

@@ -1,5 +1,5 @@
-// Pressure in closed shells: its resultants, the equilibrium of a rubber balloon, and the checks of
-// energy_laws.h.
+// Pressure in closed shells: its resultant force and torque, the equilibrium of a rubber balloon, and checks
+// of energy_laws.h.
 #include <pliant/local/shell/pressure.h>
 
 #include <pliant/local/shell/membrane.h>
@@ -20,7 +20,8 @@ VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
 
-/// Checks derivatives, threads, and the stiffness matrix with its rank-one term.
+/// Checks derivatives, threads, the stiffness matrix with its rank-one term, the frequency bound, and that
+/// the resultant force and torque are zero.
 void check_laws(const Pressure& pressure, const Pressure& more, const ShellMesh& small,
                 const ShellMesh& large) {
   Draws draws(1);
@@ -38,7 +39,6 @@ void check_laws(const Pressure& pressure, const Pressure& more, const ShellMesh&
   INFO("bound " << bound << ", largest " << largest);
   CHECK(bound >= largest);
   CHECK(bound <= 4 * largest);
-  // The resulting force and torque are zero.
   const VecX<double> f = force(pressure, x);
   const auto push = nodes(f, small.n_nodes()), at = nodes(x, small.n_nodes());
   Vec3<double> torque = Vec3<double>::Zero();
@@ -80,7 +80,7 @@ TEST_CASE("pressure: the equilibrium of a rubber balloon agrees with theory", "[
     const VecX<double> x = s * rest(mesh);
     const VecX<double> pull = force(NeoHookeanMembrane(mesh, {E, 0.5, t}), x),
                        push = force(ConstantPressure(mesh, p), x);
-    // The ratio of the virtual works of both forces when the sphere grows; it is -1 in equilibrium.
+    // The ratio of the virtual works of both forces in uniform growth of the sphere is -1 in equilibrium.
     return std::abs(pull.dot(x) / push.dot(x) + 1);
   };
   const double coarse = error(2), fine = error(3);

@@ -24,7 +24,8 @@ inline ShellMesh shell_mesh(const std::vector<Vec3<double>>& X,
   return ShellMesh(nodes, corners);
 }
 
-/// Returns a sphere about the origin; each level splits every triangle of the icosahedron into four.
+/// Returns a sphere about the origin: an icosahedron, each of whose triangles is split into four, `levels`
+/// times.
 inline ShellMesh icosphere(int levels, double radius) {
   const double g = 0.5 * (1 + std::sqrt(5.0));
   std::vector<Vec3<double>> X{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -53,8 +54,8 @@ inline ShellMesh icosphere(int levels, double radius) {
   return shell_mesh(X, triangles);
 }
 
-/// Returns a rectangle a x b in the plane z = 0 about the origin, of n x m irregular cells of two triangles
-/// each. Its boundary is straight.
+/// Returns a mesh of a rectangle a x b in the plane z = 0 about the origin, with n x m irregular cells of two
+/// triangles each. Nodes of the boundary are on the straight sides of the rectangle.
 template <class Draws>
 ShellMesh irregular_sheet(int n, int m, double a, double b, Draws&& draws) {
   std::vector<Vec3<double>> X;
@@ -82,7 +83,8 @@ inline double solid_angle(const Vec3<double>& a, const Vec3<double>& b, const Ve
   return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
-/// Returns the area of each node on the sphere: a third of each adjacent triangle; the sum is 4 pi r^2.
+/// Returns the area of each node on the sphere: a third of each adjacent spherical triangle. The sum is 4 pi
+/// r^2.
 inline VecX<double> sphere_areas(const ShellMesh& mesh) {
   VecX<double> area = VecX<double>::Zero(mesh.n_nodes());
   for (Eigen::Index t = 0; t < mesh.n_triangles(); ++t)
@@ -100,14 +102,14 @@ inline VecX<double> node_areas(const ShellMesh& mesh) {
   return area;
 }
 
-/// Repeats one value for each node for the local coordinates along x, y and z.
+/// Returns local coordinates whose x, y and z entries at node i are all a[i].
 inline VecX<double> thrice(const VecX<double>& a) {
   VecX<double> all(3 * a.size());
   all << a, a, a;
   return all;
 }
 
-/// Returns local coordinates with the vector f(X) at each node, X: position of the node.
+/// Returns local coordinates whose vector at each node is f(X), with the position X of the node.
 template <class F>
 VecX<double> field(const ShellMesh& mesh, F&& f) {
   const Eigen::Index n = mesh.n_nodes();

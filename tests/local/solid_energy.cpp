@@ -39,8 +39,8 @@ struct Kind {
   static constexpr int N = Element::n_nodes;
   static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
   static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
-  /// Size of the random displacements: strains of some tenths. Elements are inverted only for laws that
-  /// permit it.
+  /// Largest random displacement. It causes strains of some tenths and may invert elements. It is smaller for
+  /// elements of 15 nodes with the law Corotated, which refuses inverted elements.
   static constexpr double kSize = N == 15 && std::is_same_v<Law, Corotated> ? 0.01 : 0.05;
   static VecX<double> state(const SolidMesh& mesh, double size = kSize) {
     Draws draws(3);
@@ -80,12 +80,12 @@ MatX<double> stiffness(const Energy& energy, const VecX<double>& x) {
   for (const auto& entry : entries) K(entry.row(), entry.col()) += entry.value();
   return K;
 }
-/// Fourth-order central difference.
+/// Returns the derivative of f at 0 by the fourth-order central difference with the step h.
 template <class F>
 auto difference(F&& f, double h) -> decltype(f(h)) {
   return ((8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h));
 }
-/// A uniform strain of some tenths.
+/// Returns a uniform displacement gradient with components of up to 0.2.
 Mat3<double> uniform_strain() {
   Mat3<double> A;
   A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
@@ -153,7 +153,8 @@ TEMPLATE_TEST_CASE("a uniform strain gives equal stress in all elements", "[soli
     double volume = 0;
     for (int e = 0; e < energy.n_elements(); ++e) volume += energy.volume(e);
     CHECK(energy.energy(x) == Approx(volume * energy.law().density(A)).epsilon(1e-13));
-    // Virtual work of the boundary: the sum of f_a X_a^T is -V P, with V the volume.
+    // Virtual work of the boundary: the sum of f_a X_a^T over the nodes a is -V P, with the volume V and the
+    // stress P.
     const Mat3<double> stress = nodes(f, mesh.n()).transpose() * mesh.rest;
     CHECK((stress + volume * energy.law().stress(A)).norm() <= 1e-13 * stress.norm());
   }
@@ -330,8 +331,7 @@ TEST_CASE("masses: sums, moments, positive values", "[solid]") {
     CHECK(lumped.sum() == Approx(ones.dot(M * ones)).epsilon(n == 15 ? 1e-3 : 1e-14));
     if (n == 4) CHECK((lumped - M * ones).norm() <= 1e-14 * lumped.norm());
     if (n == 10) CHECK((M * ones).minCoeff() < 0);
-    // Moments of inertia of the ball, 4 pi / 15 rho; exact over the mesh if positions are in the function
-    // space.
+    // The integral of rho z^2 over the unit ball is 4 pi rho / 15.
     const double exact = 3 * 4 * kPi / 15;
     CHECK(z.dot(M * z) == Approx(exact).epsilon(n == 4 ? 0.15 : 0.02));
     CHECK(z.dot(lumped.cwiseProduct(z)) == Approx(exact).epsilon(n == 15 ? 0.005 : 0.2));

@@ -44,8 +44,8 @@ inline SolidMesh crooked_box(int n_nodes) {
                     n_nodes == 4 ? 2 : 1, order_of(n_nodes), {"taper", "bend"});
 }
 
-/// Moves face and middle nodes to the quadratic interpolation of the other nodes, so that elements of 15
-/// nodes have the geometry of elements of 10.
+/// Returns the mesh with the face and middle nodes at the quadratic interpolation of the other nodes. Its
+/// elements of 15 nodes have the geometry of elements of 10 nodes.
 inline SolidMesh without_bubbles(SolidMesh mesh) {
   std::array<Vec3<double>, EnrichedTetrahedron::n_nodes> X;
   std::array<Vec3<double>, 5> size;  // coefficients of the bubbles of the faces and the middle
@@ -70,7 +70,7 @@ inline SolidMesh without_bubbles(SolidMesh mesh) {
   return mesh;
 }
 
-/// Returns the largest force on an inner node.
+/// Returns the largest norm of the forces f on inner nodes.
 inline double largest_inside(const VecX<double>& f, const SolidMesh& mesh) {
   std::vector<bool> is(static_cast<std::size_t>(mesh.n()), true);
   for (Eigen::Index i = 0; i < mesh.boundary.size(); ++i)
@@ -81,7 +81,7 @@ inline double largest_inside(const VecX<double>& f, const SolidMesh& mesh) {
   return largest;
 }
 
-/// Returns positions or displacements A X + b of all nodes.
+/// Returns local coordinates whose vector at each node is A X + b, with the rest position X of the node.
 inline VecX<double> affine(const Nodes& X, const Mat3<double>& A, const Vec3<double>& b) {
   VecX<double> x(3 * X.rows());
   nodes(x, X.rows()) = (X * A.transpose()).rowwise() + b.transpose();

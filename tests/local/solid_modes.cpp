@@ -34,7 +34,7 @@ Matrices matrices(const SolidMesh& mesh, const Elasticity& material, Mass mass) 
                                : test::in_space(consistent_mass(mesh.rest, mesh.elements, 1), mesh.n())};
 }
 
-/// Returns a vector for each node, from its rest position.
+/// Returns local coordinates whose vector at each node is f(X), with the rest position X of the node.
 template <class F>
 VecX<double> field(const SolidMesh& mesh, F&& f) {
   VecX<double> u(3 * mesh.n());
@@ -45,10 +45,10 @@ VecX<double> field(const SolidMesh& mesh, F&& f) {
   return u;
 }
 
-/// Relative errors of omega r / c_t of the unit sphere with nu_P = 0.3: torsional modes of order 2 (T2, five
-/// modes), spheroidal modes of orders 2 and 1 (S2, five; S1, three), and breathing. Modes of S2 (second
-/// radial order, 0.2 % away) and S4 (1 % away) mix with breathing, so that its error is that of the exact
-/// field, smoothed on the mesh.
+/// Relative errors of omega r / c_t of the unit sphere with nu_P = 0.3, with the speed c_t of shear waves.
+/// The modes are the torsional ones of degree 2 (T2, five modes), the spheroidal ones of degrees 2 and 1 (S2,
+/// five; S1, three), and breathing. Modes S2 (of second radial order, 0.2 % away) and S4 (1 % away) mix with
+/// breathing on a mesh. Therefore the error of breathing is that of its exact field, smoothed on the mesh.
 struct LambErrors {
   double T2, S2, S1, breathing;
 };
@@ -165,12 +165,12 @@ struct Bar {
         mesh(test::solid_mesh("cylinder", {{"a3", length / 2}}, resolution, Order::quadratic)),
         whole(matrices<QuadraticTetrahedron>(mesh, Elasticity(1, poisson), Mass::consistent)) {}
 
-  /// Returns sqrt(E I / rho A) / L^2, the unit of the bending frequencies.
+  /// Returns sqrt(E I / (rho A)) / L^2, the unit of the bending frequencies.
   double unit() const { return 0.5 / (L * L); }
   double shear_speed() const { return std::sqrt(1 / (2 * (1 + nu))); }
   bool at_end(int node, double z) const { return std::abs(mesh.rest(node, 2) - z) < 1e-9; }
-  /// Returns a matrix whose columns are the free coordinates: those of nodes that are not at the given ends
-  /// z.
+  /// Returns the matrix S that maps the free coordinates to all coordinates. Coordinates of nodes at the
+  /// given ends z are not free.
   test::Sparse free_coordinates(const std::vector<double>& ends) const {
     std::vector<Eigen::Triplet<double>> entries;
     int n = 0;
@@ -195,8 +195,8 @@ struct Bar {
       return f(X[2] / L + 0.5) * Vec3<double>(-X[1], X[0], 0);
     });
   }
-  /// Modes of the Euler-Bernoulli beam along x and y. root: wave number times L. The end s = 0 is free or
-  /// clamped; the end s = 1 is free.
+  /// Returns the modes of the Euler-Bernoulli beam along x and along y, as two columns. root: wave number
+  /// times L. The end s = 0 is free or clamped; the end s = 1 is free.
   MatX<double> bending(double root, bool clamped) const {
     const double sign = clamped ? 1 : -1, fraction = (std::cosh(root) + sign * std::cos(root)) /
                                                      (std::sinh(root) + sign * std::sin(root));
@@ -211,7 +211,8 @@ struct Bar {
   }
 };
 
-/// Returns omega of the mode with the largest modal mass in the given fields.
+/// Returns omega of the mode with the largest fraction of its modal mass in the given fields. Checks that
+/// this fraction is above 0.75.
 double mode_frequency(const Modes& modes, const test::Sparse& M, const MatX<double>& fields) {
   double best = 0, omega = 0;
   for (Eigen::Index i = 0; i < modes.values.size(); ++i) {
@@ -223,14 +224,14 @@ double mode_frequency(const Modes& modes, const test::Sparse& M, const MatX<doub
     best = fraction;
     omega = std::sqrt(modes.values[i]);
   }
-  CHECK(best > 0.75);  // the remaining modal mass is mainly rotation of the sections
+  CHECK(best > 0.75);  // the rest of the modal mass is mainly rotation of the sections
   return omega;
 }
 
 constexpr std::array<double, 3> kFreeRoots{4.730041, 7.853205, 10.995608},
     kClampedRoots{1.875104, 4.694091, 7.854757};
 
-/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / rho A) / L^2, from Timoshenko's
+/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / (rho A)) / L^2, from Timoshenko's
 /// beam for L / r = 10 and 20, and from the solid for L / r = 10 (polynomials of degree 10,
 /// tests/part/bases.cpp).
 constexpr std::array<double, 3> kBeam10{20.3813, 49.2314, 83.9790}, kBeam20{21.8046, 57.5396, 106.6438},
@@ -292,8 +293,8 @@ ClampedErrors clamped_bar(int resolution, double nu) {
 }
 
 /// Relative errors of the statics of a bar with nu = 0 that is clamped at one end. The exact deflection under
-/// a force F at the other end is F L^3 / 3 E I, plus F L / kappa G A by shear. The exact torque that rotates
-/// this end by theta is T = G J theta / L.
+/// a force F at the other end is F L^3 / (3 E I), plus F L / (kappa G A) by shear. The exact torque that
+/// rotates this end by theta is T = G J theta / L.
 struct StaticErrors {
   double deflection, torque;
 };

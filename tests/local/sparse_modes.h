@@ -1,4 +1,4 @@
-// Eigenvalues of K u = lambda M u near a shift, by inverse subspace iteration; and Rayleigh quotients of
+// Modes of K u = lambda M u with eigenvalues near a shift, by inverse subspace iteration; and mean omega^2 of
 // given fields.
 #pragma once
 
@@ -28,8 +28,7 @@ inline Sparse stiffness_at(const NodalEnergy& energy, const VecX<double>& x) {
   energy.add_stiffness(x, entries);
   return sparse(entries, x.size());
 }
-/// Returns the matrix over local coordinates that repeats a matrix over nodes for each of the three
-/// directions.
+/// Returns the matrix over local coordinates that repeats an n x n matrix over nodes for x, y and z.
 inline Sparse in_space(const std::vector<Eigen::Triplet<double>>& entries, int n) {
   std::vector<Eigen::Triplet<double>> all;
   for (const auto& entry : entries)
@@ -43,7 +42,8 @@ inline Sparse in_space(const VecX<double>& masses) {
 /// Computes omega^2 of given fields U on a mesh. The solution U' of (K + below M) U' = M U contains less of
 /// the modes of high frequency than U. Each value is a mean of omega^2 over the modes of the mesh, weighted
 /// by their shares in a field of U'. It is accurate even if a mode of the mesh mixes with others of nearby
-/// frequency. below: 1/s^2, of the size of the wanted omega^2.
+/// frequency. below: 1/s^2, of the size of the wanted omega^2. The constructor throws std::runtime_error if
+/// K + below M cannot be factored.
 class SmoothedFields {
  public:
   SmoothedFields(Sparse K, Sparse M, double below) : K_(std::move(K)), M_(std::move(M)) {
@@ -67,8 +67,9 @@ struct Modes {
   MatX<double> vectors;
 };
 
-/// Returns the `wanted` modes nearest to the shift, which must not be an eigenvalue. spare: number of
-/// additional vectors in the iteration, which make it converge faster.
+/// Returns the `wanted` modes with eigenvalues nearest to the shift, in rising order. The shift must not be
+/// an eigenvalue. spare: number of additional vectors, with which the iteration converges faster. Throws
+/// std::runtime_error if K - shift M cannot be factored or 200 iterations do not converge.
 inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int wanted, int spare = 8) {
   const Sparse A = K - shift * M;
   const Eigen::SimplicialLDLT<Sparse> factor(A);

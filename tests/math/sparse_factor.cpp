@@ -1,5 +1,5 @@
-// The factorisation of Eigen, and those of CHOLMOD, simplicial and supernodal: accurate solutions, and the
-// row of a bad pivot.
+// The sparse factorisations of Eigen and of CHOLMOD (simplicial and supernodal): their solutions are
+// accurate, and a factorisation that fails reports the row of the bad pivot.
 #include <pliant/math/sparse_factor.h>
 #include <pliant/solve/cholmod_factor.h>
 
@@ -34,8 +34,8 @@ std::vector<Backend> backends() {
           {"CHOLMOD supernodal", [] { return pliant::make_cholmod_factor({0}); }}};
 }
 
-/// Returns the stiffness matrix of springs of random stiffness between random pairs of n nodes, and of a weak
-/// spring from each node to the ground.
+/// Returns the lower triangle of the n x n stiffness matrix of a net of springs. 2 n springs of random
+/// stiffness connect random pairs of n nodes, and a spring of stiffness 0.5 connects each node to the ground.
 SparseMatrix spring_net(int n, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> point(0, n - 1);
@@ -126,7 +126,7 @@ TEST_CASE("a pivot that fails is reported with its row") {
     }
     Eigen::MatrixXd x = good;
     CHECK_THROWS_AS(factor->solve(x), std::logic_error);
-    REQUIRE(factor->factor(lower(good)));  // With valid values the factor works again.
+    REQUIRE(factor->factor(lower(good)));  // The factor can be used again with valid values.
     factor->solve(x);
     CHECK((x - Eigen::MatrixXd::Identity(6, 6)).norm() < 1e-14);
   }

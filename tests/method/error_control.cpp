@@ -36,7 +36,7 @@ State end_of(const std::function<void(MultiBody&)>& build, const std::string& me
   return simulation.state();
 }
 
-/// A shell that swings on a ball joint; its vibrations decay within a few milliseconds.
+/// Adds a shell that swings on a ball joint. Its vibrations decay within a few milliseconds.
 void stiff_pendulum(MultiBody& body) {
   Part& part = body.add<Primitive<Sphere>>("shell", 1.0);
   part.rest({{"r", 0.5}}).make_shell();

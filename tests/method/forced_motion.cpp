@@ -18,7 +18,8 @@ struct Result {
   State state;
   Ledger ledger;
 };
-/// Returns state and ledger after 0.25 s for two deforming parts with the loads that `build` adds.
+/// Returns the state and the ledger of two deforming parts after 0.25 s in `steps` steps. build: adds the
+/// loads.
 Result end_of(const char* method, int steps, const Build& build) {
   MultiBody body;
   Part& a = test::tumbling_solid(body, "a");

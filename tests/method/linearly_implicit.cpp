@@ -1,5 +1,5 @@
-// The linearly implicit method: its order, steps far above the explicit limit (the largest stable step of
-// RK4), and when it factors which matrices.
+// The linearly implicit method: its order, its stability in steps far above the explicit limit (the largest
+// stable step of RK4), and the number of its factorisations.
 #include "catch.h"
 
 #include <new>
@@ -87,14 +87,14 @@ Part& add(MultiBody& body, const std::string& name, const Soft& soft) {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// One spinning part in free flight.
+/// Returns a function that adds one spinning part in free flight.
 Build flying(const Soft& soft) {
   return [=](MultiBody& body) {
     body.gravity.setZero();
     add(body, "soft", soft).place({1, 2, 3}).velocity({0.3, -0.2, 0.1}, {0.5, -0.4, 0.6});
   };
 }
-/// Two parts, one hanging from the other.
+/// Returns a function that adds two parts; the lower one hangs from the upper one.
 Build hanging(const Soft& soft) {
   return [=](MultiBody& body) {
     Part& upper = add(body, "upper", soft).place({0, 0, -0.6});
@@ -104,7 +104,7 @@ Build hanging(const Soft& soft) {
   };
 }
 
-/// One part between two damped springs.
+/// Returns a function that adds one part on two damped springs.
 Build between_springs(const Soft& soft) {
   return [=](MultiBody& body) {
     Part& part = add(body, "soft", soft).velocity({0.3, -0.2, 0.1}, {0.5, -0.4, 0.6});
@@ -116,7 +116,7 @@ Build between_springs(const Soft& soft) {
 struct Errors {
   std::vector<double> q, v;
 };
-/// Returns the errors of the states at `time` against fine steps of RK4.
+/// Returns the errors of q and v at `time` (s) for each number of steps, against fine steps of RK4.
 Errors errors(const Build& build, double time, const std::vector<int>& steps) {
   MultiBody exact;
   build(exact);
@@ -383,7 +383,7 @@ TEST_CASE("100 times the explicit limit on joints: stable, and joints closed to 
       const double h = 100 * explicit_limit(hanging(soft));
       CAPTURE(law, parameters, h);
       const double start = simulation.ledger().energy();
-      const int steps = law == "elastic" ? 1000 : 200;  // fewer steps where each step needs a factorisation
+      const int steps = law == "elastic" ? 1000 : 200;  // each step of "corotated" needs a factorisation
       for (int i = 0; i < steps; ++i) {
         simulation.step(h);
         REQUIRE(widest_gap(simulation) <= 1e-11);
@@ -496,7 +496,7 @@ TEST_CASE("the state is complete: another simulation, resumed from it, gives ide
     MultiBody other;
     hanging(soft)(other);
     Simulation resumed(other, kMethod, 2);
-    for (int i = 0; i < 3; ++i) resumed.step(1e-3);  // factors of another step and state remain
+    for (int i = 0; i < 3; ++i) resumed.step(1e-3);  // leaves factors of another step and state in `resumed`
     resumed.set_state(middle);
     for (int i = 0; i < 20; ++i) resumed.step(2e-3);
     CHECK(hash(resumed.state()) == hash(unbroken.state()));
@@ -604,7 +604,7 @@ void drop(Basis basis, double E) {
   CHECK(impulse / (500 * h) == Approx(weight).epsilon(1e-2));
   CHECK(simulation.ledger().kinetic < 1e-4 * weight * radius);
   CHECK(deep < 0.02 * radius);  // the ball hits at 1 m/s, which is a hundredth of the radius in a step
-  // The ball is flattened by its weight, independently of the steps.
+  // The weight flattens the ball a little; the steps do not change this.
   const double sag = radius - simulation.state().q[2];
   CHECK(sag > -3e-4 * radius);
   CHECK(sag < 30 * weight / (E * radius));
@@ -666,8 +666,8 @@ TEST_CASE("N20: springs at the nodes of a stiff part limit the step, and the pre
 
 namespace {
 
-/// A sparse factor whose factorisation always fails. memory: whether memory is sufficient; if so, the matrix
-/// is reported as one that cannot be factored.
+/// A sparse factor whose factorisation always fails. memory: true: do_factor() reports that the matrix cannot
+/// be factored; false: do_factor() throws std::bad_alloc.
 class NoFactor final : public SparseFactor {
  public:
   explicit NoFactor(bool memory) : memory_(memory) {}

@@ -14,7 +14,7 @@ using namespace pliant;
 
 namespace {
 
-/// Returns coefficients that make a soft part with any law.
+/// Returns numbers of a law, in its order, with which a part is soft.
 std::vector<double> numbers(const LocalLawInfo& law) {
   static const std::vector<std::pair<std::string, double>> known{
       {"E", 300}, {"nu", 0.3}, {"thickness", 0.1}, {"w0", 10},  {"w1", 5},
@@ -26,7 +26,7 @@ std::vector<double> numbers(const LocalLawInfo& law) {
   return values;
 }
 
-/// A soft part with the law; two global parameters are dynamic, too.
+/// Adds a soft part with the law and with two dynamic global parameters, and returns the part.
 Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("soft", law.shell ? 1 : 3);
@@ -43,7 +43,7 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
   };
   settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.5 * test::sample_velocity(X); };
   settings.energies.push_back(local_law(law.name, numbers(law)));
-  // Pressure or bending alone does not resist in-plane motion of the nodes; a membrane is added.
+  // Pressure or bending alone does not resist in-plane motion of the nodes, so a membrane is added.
   const std::string name = law.name;
   if (name == "pressure" || name == "gas" || name == "bending" || name == "folding")
     settings.energies.push_back(local_law("st_venant_kirchhoff_membrane", {300, 0.3, 0.1}));
@@ -121,7 +121,7 @@ TEST_CASE("damping of every law: K x_dot about rest, zero for rigid motion, neve
       const VecX<double> x = rest + random(0.03), rate = random(1), f = viscous(x, rate);
       CHECK(f.dot(rate) < 0);
       if (!of_position) continue;
-      // No total force and no total torque, and no force at all in rigid motion.
+      // The total force and torque are zero; in rigid motion each force is zero.
       const Nodes at = nodes(x, n), force = nodes(std::as_const(f), n);
       Vec3<double> couple = Vec3<double>::Zero();
       for (Eigen::Index k = 0; k < n; ++k)

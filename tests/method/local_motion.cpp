@@ -21,13 +21,13 @@ using test::sample_velocity;
 
 namespace {
 
-/// Material of a soft part; `order` of the elements, 0 for a shell.
+/// The material of a soft part. order: of the elements of a solid; 0 for a shell.
 struct Kind {
   const char* name;
   int order;
   std::vector<LocalLaw> laws;
 };
-/// Returns materials with energies that are quadratic in the displacements, and with energies of the
+/// Returns linear materials (energies quadratic in the displacements) and materials with energies of the
 /// positions.
 std::vector<Kind> kinds() {
   const std::vector<double> solid{300, 0.3}, sheet{300, 0.3, 0.05};
@@ -42,8 +42,9 @@ std::vector<Kind> kinds() {
           {"a curved solid of rubber", 2, {local_law("neo_hookean", solid)}}};
 }
 
-/// A tumbling part; if `soft`, its global parameters are dynamic. `order` of the elements, 0 for a shell.
-/// Without `laws` a shell has a net of springs, and a solid has the law "elastic".
+/// Adds a tumbling part and returns it. soft: whether its global parameters are dynamic. order: of the
+/// elements of a solid; 0 for a shell. If `laws` is empty, a shell has a net of springs and a solid has the
+/// law "elastic".
 Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
                const std::vector<LocalLaw>& laws = {}) {
   body.gravity.setZero();
@@ -66,9 +67,9 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
   return part;
 }
 
-/// Applies a force at each of the given material points in turn, to a moving part or a part at rest. Checks
-/// that the sum of m x_ddot over the nodes is the force, and the sum of p cross m x_ddot its torque about the
-/// frame's origin.
+/// Applies a force at each of the given material points in turn. moving: whether the part moves; otherwise
+/// its velocities are zero. Checks that the sum of m x_ddot over the nodes is the force, and that the sum of
+/// p x (m x_ddot) is the torque of the force about the origin of the frame.
 void check_forces(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
   const Vec3<double> force(1, -2, 0.5);
   std::size_t active = 0;
@@ -361,7 +362,7 @@ TEST_CASE("dust: every node of a spinning shell without elasticity moves on a st
 namespace {
 
 struct Twisted {
-  double lowest = 3, highest = -3;  ///< smallest and largest twist, rad
+  double lowest = 3, highest = -3;  ///< smallest and largest twist, rad (the initial values are replaced)
   double condition = 0;  ///< the largest condition number of the separation of twist and nodal motion
   double balance = 0;    ///< error of the energy balance / energy at the start
 };
@@ -478,7 +479,7 @@ TEST_CASE("nodes on a line do not determine the rotation about it: the run stops
     needle(there, soft, 1 - 1e-9, 0);
     CHECK_FALSE(stops([&] { Simulation(near, "rk4"); }));
     CHECK(stops([&] { Simulation(there, "rk4"); }));
-    // The nodes reach the line during the run.
+    // Here the nodes move onto the line during the run.
     for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"}) {
       CAPTURE(method);
       MultiBody body;
@@ -496,7 +497,7 @@ TEST_CASE("N66: a soft shell gives identical bits with any number of threads", "
   std::vector<std::uint64_t> bits;
   for (const int threads : {1, 2, 3}) {
     MultiBody body;
-    // The mesh has so many triangles that several threads share them.
+    // The mesh has enough triangles for several threads.
     auto& part = body.add<Primitive<Sphere>>("ball", 1);
     part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
     LocalSettings settings;

@@ -25,7 +25,7 @@ struct Problem {
   int steps;  ///< unit of the number of steps, of which each order uses a multiple or a fraction
 };
 
-/// Two links, one hanging from the other, both stretching.
+/// Adds two stretching links; the second one hangs from the first one.
 void soft_pendulum(MultiBody& body) {
   Part* before = nullptr;
   for (int i = 0; i < 2; ++i) {
@@ -38,15 +38,15 @@ void soft_pendulum(MultiBody& body) {
   }
 }
 
-/// A body on a damped spring from its surface to a moving anchor.
+/// Adds a body on a damped spring from its surface to a point of the world.
 void on_spring(MultiBody& body) {
   Part& part = body.add<Primitive<Ellipsoid>>("body");
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0.5, 0, 0}, {1, 2, 0.5});
   body.spring("spring", point(part, 0.4, 0.3), world(0, 0, 1), 500, 5, 0.5);
 }
 
-/// Bodies in a row, each connected to the previous one by a different type of joint: a hinge to the world, a
-/// slider, a plane, a line and a weld.
+/// Adds bodies in a row, each connected to the previous one by another type of joint: a hinge (to the world),
+/// a slider, a plane, a line and a weld.
 void row_of_joints(MultiBody& body) {
   auto at = [](Part& part, const Vec3<double>& x) {
     part.prepare();
@@ -66,7 +66,7 @@ void row_of_joints(MultiBody& body) {
   }
 }
 
-/// Links on ball joints in a ring; one corner is joined to the world.
+/// Adds links on ball joints in a ring. A ball joint connects one corner with the world.
 void ring(MultiBody& body) {
   constexpr int n = 5;
   std::vector<Part*> links;
@@ -85,7 +85,7 @@ void ring(MultiBody& body) {
   body.ball("nail", point(*links[0], 0, kPi), world(top * std::cos(-kPi / n), 0, top * std::sin(-kPi / n)));
 }
 
-/// A rubber shell under pressure that spins and is sheared at the start.
+/// Adds a spinning rubber shell under pressure, with an initial velocity that shears it.
 void shell(MultiBody& body) {
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
   part.make_shell().rest({{"a1", 0.1}, {"a2", 0.08}, {"a3", 0.12}}).velocity({0, 0, 0}, {2, 1, -3});
@@ -156,7 +156,7 @@ TEST_CASE("every method has its order on smooth motion, free, with joints and wi
       CAPTURE(q, v, lambda);
       CHECK(test::observed_order(q) > min_order);
       CHECK(test::observed_order(v) > min_order);
-      // Forces reach their order only at small steps, so that only the last two errors count.
+      // Forces show the order only at small steps, so only the last two errors are compared.
       if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > min_order);
     }
   }

@@ -40,7 +40,8 @@ LocalSettings soft(Basis basis, double E = 2e3) {
   return settings;
 }
 
-/// A tumbling, oscillating solid, with three dynamic parameters or none.
+/// Adds a tumbling, oscillating solid and returns it. parameters: whether three of its parameters are
+/// dynamic.
 Part& tumbling(MultiBody& body, Basis basis, bool parameters) {
   body.gravity.setZero();
   auto& part = body.add(make_part("soft", "superellipsoid", {"taper", "twist"}, 20));
@@ -252,8 +253,8 @@ TEST_CASE("modes on a ball joint, a hinge and a loop: joints stay closed, and th
 
 namespace {
 
-/// Adds a part with a basis, in free flight or hanging from a point of its surface. With nodes, the mesh is
-/// coarse.
+/// Adds a part with a basis, in free flight or hanging from a point of its surface. For Basis::nodes the mesh
+/// is coarse.
 void add_part(MultiBody& body, Basis basis, bool hanging) {
   auto& part = body.add<Primitive<Ellipsoid>>("soft", 20);
   part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})

@@ -9,7 +9,7 @@ inline long double beta(long double x, long double y) {
   return std::exp(std::lgamma(x) + std::lgamma(y) - std::lgamma(x + y));
 }
 
-/// Returns the integral of x^i y^j z^k over a superellipsoid; i, j and k are even.
+/// Returns the integral of x^i y^j z^k over a superellipsoid with the semi-axes a. i, j and k must be even.
 inline long double moment(const long double a[3], long double eps1, long double eps2, int i, int j, int k) {
   return std::pow(a[0], i + 1) * std::pow(a[1], j + 1) * std::pow(a[2], k + 1) * eps1 * eps2 /
          (i + j + k + 3) * beta((i + j + 2) * eps1 / 2, (k + 1) * eps1 / 2) * 2 *

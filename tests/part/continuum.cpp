@@ -55,7 +55,8 @@ std::unique_ptr<Part> make(const Body& body, const std::string& law, bool shell 
   return part;
 }
 
-/// Returns the rest values changed by random amounts of up to `size`, relative for lengths.
+/// Returns the rest values of the dynamic parameters, changed by random amounts of up to `size`. For
+/// parameters with relative ranges (lengths) the amounts are multiples of the rest value.
 VecMax<double> near_rest(Draws& draws, const Part& part, double size) {
   VecMax<double> q(part.n_s());
   for (int k = 0; k < part.n_s(); ++k) {
@@ -75,7 +76,7 @@ VecX<double> force(const Part& part, const VecMax<double>& q) {
   return force(part, q, VecMax<double>(VecMax<double>::Zero(q.size())), 0);
 }
 
-/// Returns F at a material point, from the material gradients of the map.
+/// Returns the deformation gradient F from the rest shape to the shape at q, at a material point (u, v, w).
 Mat3<double> gradient(const Part& part, const VecMax<double>& q, double u, double v, double w) {
   const VecMax<double> no_rate = VecMax<double>::Zero(q.size());
   return part.material_gradient(u, v, w, part.parameters().expand<double>(q, no_rate)) *
@@ -216,7 +217,7 @@ TEST_CASE("at rest the force is zero, and damping is beta times the stiffness", 
 
 TEST_CASE("a solid sphere with three dynamic semi-axes has the frequencies of homogeneous deformation",
           "[continuum]") {
-  // With eta = omega r / c_t (c_t: speed of shear waves), the deviatoric modes have eta = sqrt(10), and the
+  // eta is omega r / c_t with the speed c_t of shear waves. The deviatoric modes have eta^2 = 10, and the
   // breathing mode has eta^2 = 5 (3 lambda + 2 mu) / mu.
   for (const std::string& law : kSolidLaws) {
     const double r = 0.7, density = 1000;

@@ -46,8 +46,8 @@ std::vector<Material<double>> points_of(Draws& draws, const Part& part, int n) {
   return points;
 }
 
-/// Checks s, J and the rates; `scale` multiplies the tolerances, as strong deformations amplify rounding and
-/// difference errors.
+/// Checks s, J and the time derivatives of s at material points. `scale` multiplies the tolerances, because
+/// strong deformations amplify the errors of rounding and of differences.
 void check_kinematics(const Part& part, const test::RandomState& state,
                       const std::vector<Material<double>>& at, double scale = 1) {
   const test::Reference reference(part, state.q_s, state.q_s_dot);
@@ -173,7 +173,7 @@ TEST_CASE("material gradients agree with finite differences", "[part]") {
         D.col(2) = test::first_derivative([&](test::Long t) { return point(0, 0, t); }, h);
       }
       ++n_tested;
-      if ((coarse - fine).norm() > 1e-11L * fine.norm()) continue;  // across a rim, or next to a pole
+      if ((coarse - fine).norm() > 1e-11L * fine.norm()) continue;  // at a rim or next to a pole
       ++n_smooth;
       CHECK((E - fine.cast<double>()).norm() <= 1e-8 * E.norm());
     }
@@ -327,8 +327,8 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
                                          test::has_text("make the body slimmer"));
   part->initial({{"bend.angle", 0.5}});
   CHECK_NOTHROW(part->prepare());
-  // The part folds if the curvature times the half width exceeds one, that is if angle a1 / a3 > 1. Here a3
-  // is 1 m.
+  // The part folds if its half width times the curvature is above one, that is if |angle| a1 / a3 > 1. Here
+  // a3 is 1 m.
   auto at = [](double a1, double angle) { return VecMax<double>(Eigen::Vector2d(a1, angle)); };
   CHECK_FALSE(part->is_inverted(at(1, 0.99)));
   CHECK(part->is_inverted(at(1, 1.01)));

@@ -17,7 +17,7 @@ using test::Draws;
 
 namespace {
 
-/// Returns a part with dynamic lengths, all of them or only the last.
+/// Returns an unprepared part in which all lengths of the shape, or only the last one, are dynamic.
 std::unique_ptr<Part> make_with_dynamic_lengths(const std::string& shape, bool all,
                                                 const std::vector<std::string>& links = {}) {
   auto part = make_part("part", shape, links, 700);

@@ -15,7 +15,7 @@ using test::Draws;
 
 namespace {
 
-/// Makes the parameters of the shape dynamic, except its exponents.
+/// Makes all parameters of the shape dynamic except its exponents.
 void make_shape_dynamic(Part& part) {
   std::vector<std::string> names;
   for (int i = 0; i < part.parameters().n_shape(); ++i)

@@ -1,6 +1,5 @@
 // An independent evaluation of a part, in long double and by finite differences. It uses the formulas of the
-// shape and of the global deformations, which it finds by name. It uses no derivatives, batches or sums of
-// the engine.
+// shape and of the global deformations only, without the derivatives, batches and sums of the engine.
 #pragma once
 
 #include <cmath>

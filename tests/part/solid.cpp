@@ -24,7 +24,7 @@ using Order = Solid::Order;
 namespace {
 
 using Triangle = std::array<int, 3>;
-/// Returns the triangle with its smallest node first, in the given orientation.
+/// Returns the triangle with its nodes rotated so that the smallest number is first.
 Triangle smallest_first(Triangle t) {
   while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
   return t;
@@ -57,8 +57,8 @@ struct Geometry {
 };
 /// Returns the volume of a mesh with nodes at s, and the smallest quality and Jacobian of its elements. The
 /// quality of an element with the volume V is 12 (3 V)^(2/3) / (sum of the squared edge lengths), or 0 if V
-/// is not positive; it is 1 for a regular tetrahedron. The Jacobian of a quadratic element is the smallest
-/// determinant at its quadrature points / mean determinant; for linear elements it is infinite.
+/// is not positive. A regular tetrahedron has the quality 1. The Jacobian of a quadratic element is its
+/// smallest determinant at quadrature points / its mean determinant; for linear elements it is infinite.
 Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   Geometry g;
   for (Eigen::Index t = 0; t < solid.elements().cols(); ++t) {
@@ -82,7 +82,7 @@ Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   return g;
 }
 
-/// Returns a part with moderate rest values of its chain.
+/// Returns a part whose chain has random rest values within 0.3 of the defaults, without folds.
 std::unique_ptr<Part> moderate_part(const std::string& shape, const std::vector<std::string>& chain) {
   std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
   Draws draws(11);

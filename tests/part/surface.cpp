@@ -34,7 +34,7 @@ Topology topology(const Eigen::Matrix3Xi& triangles, int vertices) {
   }
   return {vertices, static_cast<int>(edges.size()) / 2, static_cast<int>(triangles.cols()), closed};
 }
-/// Returns the number of different points.
+/// Returns the number of different points in the columns of x.
 int count_different(const Eigen::Matrix3Xd& x) {
   std::set<std::array<double, 3>> all;
   for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});

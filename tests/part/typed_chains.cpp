@@ -1,5 +1,5 @@
-// A chain assembled at run time gives bits identical to the typed chain: positions, Jacobians, rates, masses,
-// forces.
+// A chain assembled at run time gives the bits of the chain that is a template argument (typed): positions,
+// Jacobians, rates, masses and inertial forces.
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>

@@ -1,5 +1,6 @@
-// Laws of every shape in the list: e and its derivatives, and the inverse of e. The label of a point x is its
-// material point, with e(label) = x; the gauge of x is the radial coordinate w of this material point.
+// Laws of every shape in AllShapes (shape/all_shapes.h): e and its derivatives, and the inverse of e. e maps
+// a material point (u, v, w) to its position. The label of a position x is the material point with e(label) =
+// x; the gauge of x is the radial coordinate w of this material point.
 #include "catch.h"
 
 #include <cmath>
@@ -57,13 +58,12 @@ double size_of(const ShapeVec<Shape, double>& a) {
     size = std::max(size, Shape::template e<double>(m, a).norm());
   return size;
 }
-/// Returns the step of finite differences for a parameter of value a: 1e-3 of |a|, or of 0.1 if |a| is
-/// smaller.
+/// Returns the step of finite differences for a parameter of value a: 1e-3 times the larger of |a| and 0.1.
 Long step_of(double a) {
   return 1e-3L * std::max(std::abs(a), 0.1);
 }
 
-/// Returns material points at the poles and seams, and elsewhere.
+/// Returns the special points of the shape (poles, seams and others, draws.h) and 60 random material points.
 template <class Shape>
 std::vector<Material<double>> test_points(Draws& draws) {
   std::vector<Material<double>> points = test::special_points(Shape::mesh);
@@ -180,7 +180,7 @@ TEMPLATE_LIST_TEST_CASE("N01 N02 N15: points at poles, seams and centres are fin
         REQUIRE(std::isfinite(t[r].dd));
       }
     }
-    // A full turn returns to the start point, to the last bit; at a pole v has no effect.
+    // v = -pi and v = pi give one position, to the last bit. At a pole, v has no effect.
     for (int i = -2; i <= 2; ++i)
       for (double w : {0.25, 1.0}) {
         const double u = i * kPi / 4;
@@ -247,7 +247,7 @@ TEMPLATE_LIST_TEST_CASE("gauge and label invert e", "[shape]", AllShapes) {
       const double size = size_of<Shape>(a);
       for (const Material<double>& m : test_points<Shape>(draws)) {
         const Vec3<double> x = Shape::template e<double>(m, a);
-        // The accuracy of a gauge is limited by the rounding of its argument.
+        // The rounding of the position x limits the accuracy of its gauge.
         double rounding = 0;
         for (int i = 0; i < 6; ++i) {
           const Vec3<double> off = (i < 3 ? 1e-15 : -1e-15) * size * Vec3<double>::Unit(i % 3);

@@ -1,5 +1,5 @@
-// The block factorisation against dense algebra: random patterns and sizes in three orders of elimination;
-// redundant rows; derivatives.
+// The block factorisation against dense algebra: random patterns and block sizes in three orders of
+// elimination, redundant rows, and derivatives.
 #include "catch.h"
 
 #include <numeric>
@@ -24,7 +24,8 @@ std::vector<int> given_order(const std::vector<int>& first, const std::vector<in
   return order;
 }
 
-/// A random matrix A = G G^T of blocks: G has a column of blocks for each edge and each node.
+/// A random positive definite matrix A = G G^T of blocks. Each node is a row of blocks. G has a column of
+/// blocks for each edge and for each node.
 struct Sample {
   std::vector<int> sizes, row;
   std::vector<std::pair<int, int>> edges;

@@ -17,7 +17,8 @@ using test::Draws;
 
 namespace {
 
-/// Returns the impulses of the first valid active set; empty if none is valid.
+/// Returns the impulses of the first active set for which impulses and velocities W lambda + b are not
+/// negative; empty if there is no such set.
 VecX<double> by_enumeration(const MatX<double>& W, const VecX<double>& b) {
   const Eigen::Index n = b.size();
   const double scale = b.cwiseAbs().maxCoeff();

@@ -17,8 +17,8 @@ using test::Draws;
 
 namespace {
 
-/// Masses in a line. Each has `contacts` contacts with the next one, with normals near the line; the first
-/// also has this number of contacts with a wall.
+/// Masses in a line. Each mass has `contacts` contacts with the next one, with normals close to the direction
+/// of the line. The first mass also has `contacts` contacts with a wall.
 struct LineOfMasses {
   CoulombSystem system;
   std::vector<double> mass;

@@ -1,5 +1,5 @@
-// The factor of small mass matrices against dense algebra: random matrices, coordinates without inertia,
-// derivatives.
+// The factor of small mass matrices against dense algebra: random matrices, coordinates without inertia of
+// their own, and derivatives.
 #include "catch.h"
 
 #include <cmath>

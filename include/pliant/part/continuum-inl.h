@@ -114,7 +114,7 @@ struct SplitMotion {
   }
 };
 
-/// F, its rate and dF/dq_k at four points, with derivatives along the direction of a motion.
+/// F, its rate and dF/dq_k at four points, with derivatives along the dual parts (dq, d_rate) of a motion.
 struct DualStrain {
   Mat3<DualPack> F, F_dot;
   std::array<Mat3<DualPack>, kMaxGlobal> dF;
