@@ -2,9 +2,11 @@
 // surfaces of a frame.
 #include "catch.h"
 
+#include <cstring>
 #include <memory>
 
 #include <pliant/io/format/obj.h>
+#include <pliant/io/format/ply.h>
 #include <pliant/io/frame_meshes.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/run_files.h>
@@ -136,6 +138,11 @@ TEST_CASE("visible planes are among the surfaces of a frame while they are activ
   CHECK(swatter.mesh.x.rowwise().maxCoeff() == Eigen::Vector3d(-1.25, 2, 1));
   CHECK(swatter.mesh.normals.col(0) == Eigen::Vector3d::UnitX());
   CHECK(swatter.mesh.normals.col(2) == -Eigen::Vector3d::UnitX());
+  // In a PLY file, which has one normal for each vertex, the normals of planes are those of the front side.
+  const std::string bytes = ply_bytes({swatter}), mark = "end_header\n";
+  float normal[3];
+  std::memcpy(normal, bytes.data() + bytes.find(mark) + mark.size() + 3 * sizeof(double), sizeof normal);
+  CHECK(Eigen::Vector3f(normal[0], normal[1], normal[2]) == Eigen::Vector3f::UnitX());
   CHECK(frame.bounds(state).min() == Eigen::Vector3d(-2, -1, 0));
   CHECK(frame.bounds(state).max() == Eigen::Vector3d(2, 2, 1.1));
   state.start = 0.9;

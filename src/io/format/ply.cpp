@@ -13,12 +13,23 @@ void put(std::string& bytes, Value value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+/// Sums of normals shorter than this are zero but for rounding.
+constexpr double kNoNormal = 1e-9;
+
 Eigen::Matrix3Xd vertex_normals(const TriangleMesh& mesh) {
-  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, mesh.x.cols());
+  Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, mesh.x.cols()), first = sums;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) normals.col(mesh.triangles(k, t)) += mesh.normals.col(mesh.corners(k, t));
-  normals.colwise().normalize();
-  return normals;
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = mesh.triangles(k, t);
+      const auto normal = mesh.normals.col(mesh.corners(k, t));
+      if (first.col(vertex).isZero(0)) first.col(vertex) = normal;
+      sums.col(vertex) += normal;
+    }
+  for (Eigen::Index vertex = 0; vertex < sums.cols(); ++vertex) {
+    const double length = sums.col(vertex).norm();
+    sums.col(vertex) = length > kNoNormal ? Vec3<double>(sums.col(vertex) / length) : first.col(vertex);
+  }
+  return sums;
 }
 
 }  // namespace
