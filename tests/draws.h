@@ -40,7 +40,7 @@ class Draws {
                    std::min(spec.dynamic.max, spec.standard + 3));
   }
 
-  /// Returns a material point of a shape with this mesh pattern, on the surface or inside.
+  /// Returns a material point of a shape with this mesh pattern, inside and never on the surface (w < 1).
   Material<double> material(MeshPattern pattern) {
     const double tall = pattern == MeshPattern::torus ? kPi : kPi / 2;
     return material_at(uniform(-tall, tall), uniform(-kPi, kPi), uniform(0, 1));

@@ -201,7 +201,7 @@ int info(const SceneOptions& options) {
   }
   std::cout << pliant::count_text(static_cast<std::int64_t>(model.parts().size()), "part") << ", "
             << model.n_v() << " degrees of freedom (" << model.n_limits() << " dynamic parameters, " << frozen
-            << " frozen), " << mass << " kg in motion\n";
+            << " frozen), " << mass << " kg in parts with degrees of freedom\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
   print_obstacles(scene->body);
   print_joints(simulation);
@@ -222,7 +222,7 @@ int info(const SceneOptions& options) {
     std::cout << "largest stable step: about " << pliant::rounded_text(stable.step)
               << " s at the start, limited by " << stable.limit << "\n";
   else
-    std::cout << "largest stable step: unlimited, because nothing is stiff\n";
+    std::cout << "largest stable step: unlimited, because the method integrates no stiff force explicitly\n";
   if (!stable.uncounted.empty()) std::cout << "  " << stable.uncounted << "\n";
   if (scene->tolerance == 0 && schedule.step() > stable.step)
     std::cout
@@ -236,7 +236,9 @@ int info(const SceneOptions& options) {
 void add_info(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SceneOptions>();
   CLI::App* command = app.add_subcommand(
-      "info", "Describe a scene: parts, degrees of freedom, mass, skipped work, largest stable step");
+      "info",
+      "Describe a scene: parts, degrees of freedom, mass, computations that the scene does not need, largest "
+      "stable step");
   add_scene_options(*command, *options);
   command->footer("Example:\n  pliant info scenes/pull.json --set /time/step=0.01");
   command->callback([options, &action] { action = [options] { return info(*options); }; });

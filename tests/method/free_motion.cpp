@@ -1,5 +1,6 @@
 // Free motion with known solutions: the torque-free top, dust (a solid without elasticity), steady spin,
-// breathing, pseudo-rigid bodies, and a tumbling solid with all parameters dynamic.
+// breathing, and pseudo-rigid bodies. A tumbling solid with all parameters dynamic has no known solution:
+// conservation and order are checked.
 #include "catch.h"
 
 #include "motion.h"
@@ -123,7 +124,7 @@ TEST_CASE("a dust ellipsoid: every particle moves on a straight line", "[motion]
   }
 }
 
-TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / (5 k)) and keeps this width",
+TEST_CASE("steady spin: an ellipsoid that starts with the width a0 / (1 - m omega^2 / (5 k)) keeps it",
           "[motion]") {
   MultiBody body;
   body.gravity.setZero();

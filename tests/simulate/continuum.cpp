@@ -32,9 +32,9 @@ Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
   return part;
 }
 
-/// Absolute values of the changes in a run, relative to the values at the start: of the balance of the
-/// ledger, of P and of L. dissipated: work of damping, positive if energy is lost, relative to the energy at
-/// the start.
+/// balance: absolute value of the balance of the ledger at the end of a run, relative to the energy at the
+/// start. momentum, angular: norms of the changes of P and L in the run, relative to the norms at the start.
+/// dissipated: work of damping, positive if energy is lost, relative to the energy at the start.
 struct Drift {
   double balance, momentum, angular, dissipated;
 };
@@ -72,7 +72,7 @@ double frequency(Simulation& simulation, double h, int periods, F&& of_state) {
 
 }  // namespace
 
-TEST_CASE("an elastic solid of seven parameters in free flight conserves energy, P and L at order 4",
+TEST_CASE("an elastic solid of seven parameters in free flight conserves P and L, and energy at order 4",
           "[continuum][motion][long]") {
   for (const char* law : {"elastic", "st_venant_kirchhoff", "neo_hookean"}) {
     CAPTURE(law);
@@ -169,7 +169,8 @@ TEST_CASE("the Jacobian-vector product of an elastic part agrees with finite dif
   }
 }
 
-TEST_CASE("a solid that is inverted stops the run with its name", "[continuum][failure]") {
+TEST_CASE("a solid that is inverted stops the run with a message that names the part",
+          "[continuum][failure]") {
   MultiBody body;
   body.gravity.setZero();
   Part& part = test::add(body, "slab", "box", {"bend"}, 1000);

@@ -181,7 +181,8 @@ TEST_CASE("invalid prescribed motions are refused by name", "[motion]") {
   CHECK_THROWS_WITH(Model(soft), test::has_text("prescribed motion does not deform locally"));
 }
 
-TEST_CASE("a prescribed motion that ceases to be finite stops the run by name", "[motion]") {
+TEST_CASE("a prescribed motion that ceases to be finite stops the run with a message that names the part",
+          "[motion]") {
   MultiBody body;
   Part& hand = ball(body, "hand", 0.1).prescribe(along({TimeFunction::formula("sqrt(0.045 - t)"), 0, 0}));
   Part& bob = ball(body, "bob", 0.1).place({0, 0, -1});

@@ -1,5 +1,6 @@
-// Step doubling: the error of a step with resting contacts, from two half steps, and the extrapolation of
-// both. Function bodies of contact_stepping.h.
+// Step doubling: a step with resting or unlocated contacts is repeated as two half steps. The difference of
+// both results gives the error. If both agree, Richardson extrapolation combines them. Function bodies of
+// contact_stepping.h.
 #pragma once
 
 #include <pliant/contact/contact_stepping.h>
@@ -43,8 +44,8 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
   });
 }
 
-/// Returns the acceleration by gravity, m/s^2, of the parts that have lost all contacts with a body on which
-/// they rested, and zero for other parts; n_v numbers. before: contacts that rested in the whole step; now:
+/// Returns the acceleration by gravity, m/s^2, of both parts of each resting pair that has lost all its
+/// contacts, and zero for other parts; n_v numbers. before: contacts that rested in the whole step; now:
 /// contacts that its first half has resolved. t: time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
@@ -161,8 +162,9 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
 }
 
 /// Returns whether the whole step and its halves have equal lengths, modes of joints, limits and sleep, and
-/// numbers of contacts, and whether both or neither ended at an impact. If they did, neither their lengths
-/// nor the contacts of the first half are compared. has_impact: whether the halves ended at an impact.
+/// numbers of contacts, and whether both or neither ended at an impact. If both ended at an impact, total
+/// lengths and the contacts of the first half are not compared; the first half must still have its full
+/// length. has_impact: whether the halves ended at an impact.
 PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_impact,
                                           const State& state) const {
   return halves.first == 0.5 * whole.length && has_impact == whole.has_impact &&

@@ -131,7 +131,8 @@ PLIANT_INLINE void apply_solution(const ContactProblem& problem, const Model& mo
                        change = to_body * (problem.after(mover) - problem.before(mover)).head<3>(),
                        omega = state.v.segment<3>(m.v0 + 3);
     touched_parts::add_to_node(model, mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
-    // The velocity of the node is omega x p + d_dot, and p has changed.
+    // The velocity of the node, body frame, is R^T c_dot + omega x p + J q_s_dot + d_dot. Only p and d_dot
+    // change.
     touched_parts::add_to_node(model, mover, change - omega.cross(shift),
                                state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
   });

@@ -19,7 +19,8 @@ inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 /// Impulses make the velocities agree with the closed joints. On return step.work is an evaluation of the
 /// joints of the island. scratch: scratch storage; its contents are ignored. impulses: the impulses on the
 /// rows of all joints are added to it, N s. The change of energy goes to Work::projection, or to Work::limits
-/// if a limit or a slack string pushed.
+/// if the projection moved a parameter back to a limit, or pulled a string, and this limit or string did not
+/// push in the last evaluation.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
@@ -33,9 +34,10 @@ struct PreStepStorage {
   Workspace<double> ahead;  ///< evaluation of the joints at q_end
 };
 /// Applies impulses before the coordinates move by h v. With these impulses, at the end of the step every
-/// parameter is within its limits, every string is at most as long as its length, and every closed joint is
-/// closed if closed joints are projected. Sleeping islands are skipped. step.work: the evaluation at the
-/// start of the step. v_start: the velocities at the start of the step.
+/// parameter is within its limits, the ends of every slack or closed string are at most its length apart
+/// (closing strings are excepted), and every closed joint is closed if closed joints are projected. Sleeping
+/// islands are skipped. step.work: the evaluation at the start of the step. v_start: the velocities at the
+/// start of the step.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
 /// Sets each parameter that is at a limit by State::at_limit exactly to the value of this limit.

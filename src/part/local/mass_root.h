@@ -13,8 +13,8 @@ namespace pliant {
 
 class MassRoot {
  public:
-  /// nodes: M over n nodes, n x n, kg. own: inertia of the own coordinates of an energy. Throws
-  /// std::invalid_argument if M is not positive definite.
+  /// nodes: M over n nodes, n x n, kg. own: inertia of the own coordinates of an energy; every entry must be
+  /// positive. Throws std::invalid_argument if `nodes` is not positive definite.
   MassRoot(Eigen::SparseMatrix<double> nodes, const VecX<double>& own);
 
   Eigen::Index n_nodes() const { return M_.rows(); }

@@ -65,8 +65,8 @@ ParameterMesh parameter_mesh(const LocalMesh& mesh) {
     const Triangle& triangle = all[static_cast<std::size_t>(t)];
     if (!(twice_area(triangle) > 0))
       throw std::invalid_argument(
-          "some triangles of its mesh have no area on the parameter rectangle (u, v); expected exponents "
-          "nearer to 1, or the law over the surface, \"loaded_membrane\"");
+          "some triangles of its mesh are degenerate or inverted on the parameter rectangle (u, v); "
+          "expected exponents nearer to 1, or the law over the surface, \"loaded_membrane\"");
     for (int k = 0; k < 3; ++k) {
       const Corner& corner = triangle[static_cast<std::size_t>(k)];
       flat.triangles(k, t) = corner.node;

@@ -15,8 +15,9 @@ namespace pliant {
 
 schema::Record coloring_record();
 
-/// Returns the colouring of a scene. coloring: a complete object of coloring_record(). parts: the parts by
-/// name. Unknown part names are reported.
+/// Returns the colouring of a scene. coloring: a reader of an object that was validated against
+/// coloring_record(), with Reader::complete() true. parts: the parts by name. Unknown part names are
+/// reported.
 Coloring read_coloring(const Reader& coloring, const std::map<std::string, NamedPart>& parts,
                        SceneFaults& faults);
 

@@ -70,7 +70,7 @@ inline void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
   }
 }
 
-/// Evaluates p, J and their rates at the ports, body frame.
+/// Evaluates p, p_dot, J and J_dot q_s_dot at the ports, body frame.
 template <class S>
 void evaluate_ports(const PartModel& m, PartWorkspace<S>& w) {
   const auto n_ports = m.ports.size();
@@ -308,8 +308,8 @@ inline void apply_limits(const Model& model, int part, const State& modes, Works
   rows.for_each_pushed([&](const OneSidedRow& row, double) { w.pressed.push_back(row.k); });
 }
 
-/// For a derivative: adds the pushes that keep the acceleration of every pushed parameter at zero. pressed:
-/// the numbers of these parameters.
+/// For the directional derivative (S = Dual<1>): adds the forces that keep the acceleration of every
+/// parameter in `pressed` at zero. pressed: numbers of the parameters that a limit pushed.
 template <class S>
 void keep_pushed_limits(const Model& model, int part, const std::vector<int>& pressed, Workspace<S>& work) {
   if (pressed.empty()) return;

@@ -28,7 +28,7 @@ class LinearHinges {
   std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& d) const {
     return strain_change(edges(batch, d), edges_of(d));
   }
-  /// Returns the edges along which the tensions of q act, m.
+  /// Returns the edges e_k, m. The tension tau_k = dW/dq_k (edge_strain.h) acts along e_k.
   const Edges<Pack>& edges(int batch, const std::array<Vec3<Pack>, 3>&) const {
     return edges_[static_cast<std::size_t>(batch)];
   }

@@ -53,8 +53,9 @@ struct LocalWorkspace {
     new (&d) Eigen::Map<const VecX<double>>(q_d, n);
     new (&d_dot) Eigen::Map<const VecX<double>>(q_d_dot, n);
   }
-  /// Returns an estimate of the condition number of the matrix that separates (c, theta, q_s) from d: K for
-  /// nodes, S for modes (README.md). The best value is 1.
+  /// Returns an estimate of the condition number of the small matrix that remains when d_ddot is eliminated:
+  /// for nodes the matrix K of the reference conditions, for modes the Schur complement S of M. README.md
+  /// defines both; K is not the stiffness, and S is not the shape matrix. The best value is 1.
   virtual double condition() const { return 1; }
   /// Stores A and its inverse. A is nearly singular if attachment points are close together; the
   /// pseudo-inverse then replaces the inverse.
