@@ -43,6 +43,23 @@ class ShapeInterface {
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
   /// Returns the half sizes if the shape is a box, m; else nullopt.
   virtual std::optional<Vec3<double>> half_sizes(ShapeParameters a) const = 0;
+  /// Returns the number of pieces whose convex hull is that of the solid; 0 if the shape has no support
+  /// function.
+  virtual int hull_pieces() const = 0;
+  /// Returns the point (m, body frame) of a piece of the hull that is farthest in the direction m, a unit
+  /// vector of the body frame. The farthest of all pieces is on the surface. piece: from 0.
+  virtual Vec3<double> support(const Vec3<double>& m, ShapeParameters a, int piece) const = 0;
+  /// Returns support() and its derivatives along the dual parts of m. Where they do not exist (at the axis of
+  /// an end face, and for exponents below 1 at m_x = 0, m_y = 0 or m_z = 0) some of them are zero.
+  virtual Vec3<Dual<3>> support(const Vec3<Dual<3>>& m, ShapeParameters a, int piece) const = 0;
+  /// Whether contact may use the support function (shape/shape.h).
+  virtual bool has_support(ShapeParameters a) const = 0;
+  /// Whether a single piece of the hull has nearly flat regions.
+  virtual bool has_faces(ShapeParameters a) const = 0;
+  /// Whether pieces 0 and 1 of the hull are flat faces with the normals z and -z.
+  virtual bool has_end_faces() const = 0;
+  /// Whether the solid is its hull.
+  virtual bool is_convex(ShapeParameters a) const = 0;
   /// Returns e and its derivatives along three directions in (u, v, w). The dual parts of m define these
   /// directions; see material_with_tangents().
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
@@ -107,6 +124,11 @@ PLIANT_HAS_MEMBER(label)
 PLIANT_HAS_MEMBER(mesh_label)
 PLIANT_HAS_MEMBER(semi_axes)
 PLIANT_HAS_MEMBER(half_sizes)
+PLIANT_HAS_MEMBER(hull_pieces)
+PLIANT_HAS_MEMBER(has_support)
+PLIANT_HAS_MEMBER(has_faces)
+PLIANT_HAS_MEMBER(has_end_faces)
+PLIANT_HAS_MEMBER(is_convex)
 PLIANT_HAS_MEMBER(profile)
 PLIANT_HAS_MEMBER(ring)
 PLIANT_HAS_MEMBER(ring_exponent)
@@ -178,6 +200,43 @@ class ShapeInterfaceOf final : public ShapeInterface {
       return Shape::half_sizes(vec(a));
     else
       return std::nullopt;
+  }
+  int hull_pieces() const override {
+    if constexpr (detail::has_hull_pieces<Shape>)
+      return Shape::hull_pieces;
+    else
+      return 0;
+  }
+  Vec3<double> support(const Vec3<double>& m, ShapeParameters a, int piece) const override {
+    if constexpr (detail::has_hull_pieces<Shape>)
+      return Shape::template support<double>(m, vec(a), piece);
+    else
+      return Vec3<double>::Zero();
+  }
+  Vec3<Dual<3>> support(const Vec3<Dual<3>>& m, ShapeParameters a, int piece) const override {
+    if constexpr (detail::has_hull_pieces<Shape>)
+      return Shape::template support<Dual<3>>(m, lift<Dual<3>>(a), piece);
+    else
+      return {};
+  }
+  bool has_support(ShapeParameters a) const override {
+    if constexpr (detail::has_has_support<Shape>)
+      return Shape::has_support(vec(a));
+    else
+      return detail::has_hull_pieces<Shape>;
+  }
+  bool has_end_faces() const override { return detail::has_has_end_faces<Shape>; }
+  bool is_convex(ShapeParameters a) const override {
+    if constexpr (detail::has_is_convex<Shape>)
+      return Shape::is_convex(vec(a));
+    else
+      return detail::has_hull_pieces<Shape>;
+  }
+  bool has_faces(ShapeParameters a) const override {
+    if constexpr (detail::has_has_faces<Shape>)
+      return Shape::has_faces(vec(a));
+    else
+      return true;
   }
   Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
     return Shape::template e<Dual<3>>(m, lift<Dual<3>>(a));

@@ -36,6 +36,14 @@ struct Box {
     return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])),
                      T(math::abs(x[2]) / a[2]));
   }
+  /// The hull is that of the eight corners. The bits of a piece's number are the signs of its coordinates.
+  static constexpr int hull_pieces = 8;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>&, const Vec<T, 3>& a, int piece) {
+    auto sign = [&](int k) { return (piece >> k & 1) != 0 ? -1.0 : 1.0; };
+    return {a[0] * sign(0), a[1] * sign(1), a[2] * sign(2)};
+  }
+  static bool has_faces(const Vec<double, 3>&) { return false; }
   static Vec3<double> half_sizes(const Vec<double, 3>& a) { return a; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {

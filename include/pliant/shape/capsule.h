@@ -54,6 +54,14 @@ struct Capsule {
     const T cap = s2 / math::where_positive(below, below, T(1));
     return math::where_positive(on_cap, math::where_positive(off_centre, cap, T(0)), side);
   }
+  /// The hull is that of the two end balls, first the upper one.
+  static constexpr int hull_pieces = 2;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 2>& a, int piece) {
+    const T scale = a[0] / math::sqrt(T(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
+    return {m[0] * scale, m[1] * scale, m[2] * scale + a[1] * (piece == 0 ? 0.5 : -0.5)};
+  }
+  static bool has_faces(const Vec<double, 2>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 2>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 2>&) {
     return material_towards(g);

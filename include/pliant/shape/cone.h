@@ -40,6 +40,16 @@ struct Cone {
     const T zeta = x[2] / a[2];
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
+  /// The hull is that of the two end faces, first the upper one; a tip is an end face of size zero.
+  static constexpr int hull_pieces = 2;
+  static constexpr bool has_end_faces = true;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 4>& a, int piece) {
+    const double end = piece == 0 ? 1.0 : -1.0;
+    const T width = a[3] * end + 1.0;
+    const Vec<T, 2> rim = Cylinder::ellipse_support(m, a[0], a[1]);
+    return {width * rim[0], width * rim[1], a[2] * end};
+  }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
   /// Returns the surface point for direction g of the mesh pattern. A cone with a tip (|t| = 1) has only one
   /// end face; the side then also receives the vertices of the other end face.

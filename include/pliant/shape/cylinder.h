@@ -39,6 +39,24 @@ struct Cylinder {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
     return math::max(math::sqrt_from_zero(ring2), T(math::abs(x[2]) / a[2]));
   }
+  /// The hull is that of the two end faces, which are ellipses: first the upper one.
+  static constexpr int hull_pieces = 2;
+  static constexpr bool has_end_faces = true;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 3>& a, int piece) {
+    const Vec<T, 2> rim = ellipse_support(m, a[0], a[1]);
+    return {rim[0], rim[1], a[2] * (piece == 0 ? 1.0 : -1.0)};
+  }
+  /// Returns the point of the ellipse with semi-axes a1 and a2 (m) that is farthest in the direction of (m_x,
+  /// m_y); (a1, 0) if both are zero.
+  template <class T>
+  static Vec<T, 2> ellipse_support(const Vec3<T>& m, const T& a1, const T& a2) {
+    const T x = a1 * m[0], y = a2 * m[1];
+    const T square = x * x + y * y - 1e-300;
+    const T h = math::sqrt(math::where_positive(square, T(x * x + y * y), T(1)));
+    return {math::where_positive(square, T(a1 * x / h), a1),
+            math::where_positive(square, T(a2 * y / h), T(0))};
+  }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
     return material_towards(g);

@@ -31,6 +31,14 @@ struct Ellipsoid {
     return math::sqrt_from_zero(
         T(math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1])) + math::square(T(x[2] / a[2]))));
   }
+  static constexpr int hull_pieces = 1;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 3>& a, int) {
+    const Vec3<T> y{a[0] * m[0], a[1] * m[1], a[2] * m[2]};
+    const T h = math::sqrt(T(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]));
+    return {a[0] * y[0] / h, a[1] * y[1] / h, a[2] * y[2] / h};
+  }
+  static bool has_faces(const Vec<double, 3>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
     return material_towards(g);

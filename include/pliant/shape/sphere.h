@@ -25,6 +25,13 @@ struct Sphere {
     const Vec3<T> y{x[0] / a[0], x[1] / a[0], x[2] / a[0]};
     return math::sqrt_from_zero(T(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]));
   }
+  static constexpr int hull_pieces = 1;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 1>& a, int) {
+    const T scale = a[0] / math::sqrt(T(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
+    return {m[0] * scale, m[1] * scale, m[2] * scale};
+  }
+  static bool has_faces(const Vec<double, 1>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 1>& a) {
     return Ellipsoid::label(x, Vec3<double>::Constant(a[0]));
   }

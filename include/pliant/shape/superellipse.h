@@ -9,6 +9,9 @@
 
 namespace pliant {
 
+/// Largest exponent below 2 that superellipse_support() uses. At 2 the dual exponent q is infinite.
+inline constexpr double kMaxConvexExponent = 2 - 1e-9;
+
 /// Returns the section of a solid that is the unit superellipse. With the Beta function B, the area is
 /// eps B(eps/2, eps/2), and both mean squares are (eps/2) B(3 eps/2, eps/2) / area (Jaklic, Leonardis and
 /// Solina 2000).
@@ -21,6 +24,35 @@ std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, dou
 /// Returns (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t. gap: 1 - |t|,
 /// given separately because 1 - |t| is inaccurate near |t| = 1.
 double superellipse_width(double t, double gap, double eps);
+
+/// The point of a plane convex curve that is farthest in a direction, and the value of the support function.
+template <class T>
+struct PlaneSupport {
+  T x, y;  ///< the point
+  T h;     ///< x times the first component of the direction, plus y times the second
+};
+
+/// Returns the point of the unit superellipse that is farthest in the direction (m, n), m, n >= 0. The
+/// support function of a p-norm is the q-norm with 1/p + 1/q = 1, so q = 2 / (2 - eps), and the point is its
+/// gradient. For eps >= 2 the result is that of the convex hull, the square with the corners (1, 0) and
+/// (0, 1); for m = n it is then the middle of a side. For m = n = 0 the result is the point (1, 0).
+template <class T>
+PlaneSupport<T> superellipse_support(const T& m, const T& n, const T& eps) {
+  const T most(kMaxConvexExponent), e = math::min(eps, most), slope = e / T(T(2) - e);  // q - 1
+  const T first = m - n;  // not negative: m is the larger component
+  const T big = math::where_positive(-first, n, m), small = math::where_positive(-first, m, n);
+  const T ratio = small / math::where_positive(big, big, T(1));
+  const T power = power_from_zero(ratio, slope), sum = power * ratio + 1.0;  // (ratio^(q-1), 1 + ratio^q)
+  const T of_big = math::exp(T(math::log(sum) * e * -0.5)), of_small = of_big * power;
+  return {math::where_positive(-first, of_small, of_big), math::where_positive(-first, of_big, of_small),
+          big * sum * of_big};
+}
+
+/// Returns the sign of x as a factor: -1 for negative x, else 1.
+template <class T>
+T sign_factor(const T& x) {
+  return math::where_positive(T(-x), T(-1), T(1));
+}
 
 /// Returns the panels of a material angle over the whole circle: one periodic panel if eps is frozen at 1,
 /// otherwise eight power panels. eps: exponent of the superellipse; dynamic_exponent: whether eps is a degree

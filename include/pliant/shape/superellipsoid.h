@@ -3,12 +3,17 @@
 //   gauge = ((|x/a1|^(2/eps2) + |y/a2|^(2/eps2))^(eps2/eps1) + |z/a3|^(2/eps1))^(eps1/2)
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <pliant/shape/shape.h>
 #include <pliant/shape/superellipse.h>
 
 namespace pliant {
+
+/// A superellipsoid has nearly flat faces if one of its exponents is less than kMinRoundExponent. Above
+/// kMaxRoundExponent it has nearly flat faces between its tips, and its support function is not used.
+inline constexpr double kMinRoundExponent = 0.6, kMaxRoundExponent = 1.9;
 
 struct Superellipsoid {
   static constexpr const char* name = "superellipsoid";
@@ -38,6 +43,17 @@ struct Superellipsoid {
     const T ring = power_norm(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1]), T(T(2) / a[4]));
     return power_norm(ring, T(math::abs(x[2]) / a[2]), T(T(2) / a[3]));
   }
+  static constexpr int hull_pieces = 1;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 5>& a, int) {
+    const auto ring = superellipse_support(T(math::abs(m[0]) * a[0]), T(math::abs(m[1]) * a[1]), a[4]);
+    const auto profile = superellipse_support(ring.h, T(math::abs(m[2]) * a[2]), a[3]);
+    return {a[0] * profile.x * ring.x * sign_factor(m[0]), a[1] * profile.x * ring.y * sign_factor(m[1]),
+            a[2] * profile.y * sign_factor(m[2])};
+  }
+  static bool has_support(const Vec<double, 5>& a) { return std::max(a[3], a[4]) <= kMaxRoundExponent; }
+  static bool is_convex(const Vec<double, 5>& a) { return a[3] <= 2 && a[4] <= 2; }
+  static bool has_faces(const Vec<double, 5>& a) { return std::min(a[3], a[4]) < kMinRoundExponent; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   static std::vector<Panel> profile(const Vec<double, 5>& a, bool dynamic_exponents);

@@ -40,6 +40,14 @@ struct SuperellipsoidRadial {
   static T gauge(const Vec3<T>& x, const Vec<T, 5>& a) {
     return Superellipsoid::gauge(x, a);
   }
+  static constexpr int hull_pieces = 1;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 5>& a, int piece) {
+    return Superellipsoid::support(m, a, piece);
+  }
+  static bool has_support(const Vec<double, 5>& a) { return Superellipsoid::has_support(a); }
+  static bool is_convex(const Vec<double, 5>& a) { return Superellipsoid::is_convex(a); }
+  static bool has_faces(const Vec<double, 5>& a) { return Superellipsoid::has_faces(a); }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   /// The trigonometric map generates the quadrature points, because the sharp edges of the surface are

@@ -3,10 +3,10 @@
 //   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
-#include <pliant/shape/shape.h>
-#include <pliant/shape/superellipse.h>
+#include <pliant/shape/superellipsoid.h>
 
 namespace pliant {
 
@@ -40,6 +40,33 @@ struct Supertoroid {
     const T ring = power_norm(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1]), T(T(2) / a[5]));
     return power_norm(T(math::abs(T(ring - a[3]))), T(math::abs(x[2]) / a[2]), T(T(2) / a[4]));
   }
+  /// Piece 0 is the whole solid. The others are sections of the tube on the diagonals of the quadrants, so
+  /// that a torus that lies on its side has several points at which it touches a plane.
+  static constexpr int hull_pieces = 5;
+  template <class T>
+  static Vec3<T> support(const Vec3<T>& m, const Vec<T, 6>& a, int piece) {
+    const T along_z = math::abs(m[2]) * a[2];
+    if (piece == 0) {
+      const auto ring = superellipse_support(T(math::abs(m[0]) * a[0]), T(math::abs(m[1]) * a[1]), a[5]);
+      const auto tube = superellipse_support(ring.h, along_z, a[4]);
+      const T width = tube.x + a[3];
+      return {a[0] * width * ring.x * sign_factor(m[0]), a[1] * width * ring.y * sign_factor(m[1]),
+              a[2] * tube.y * sign_factor(m[2])};
+    }
+    // The section in the direction (+-1, +-1) of the unit superellipse.
+    const T diagonal = math::exp(T(a[5] * -0.5 * std::log(2.0)));
+    const double x = piece == 1 || piece == 4 ? 1 : -1, y = piece < 3 ? 1 : -1;
+    const T outward = diagonal * (a[0] * m[0] * x + a[1] * m[1] * y);
+    const auto tube = superellipse_support(T(math::abs(outward)), along_z, a[4]);
+    const T width = (tube.x * sign_factor(outward) + a[3]) * diagonal;
+    return {a[0] * width * x, a[1] * width * y, a[2] * tube.y * sign_factor(m[2])};
+  }
+  /// Only round tubes and rings: others touch a plane with a face or an edge.
+  static bool has_support(const Vec<double, 6>& a) {
+    return std::min(a[4], a[5]) >= kMinRoundExponent && std::max(a[4], a[5]) <= kMaxRoundExponent;
+  }
+  static bool has_faces(const Vec<double, 6>&) { return false; }
+  static bool is_convex(const Vec<double, 6>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 6>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 6>& a);
   static std::vector<Panel> profile(const Vec<double, 6>& a, bool dynamic_exponents);
