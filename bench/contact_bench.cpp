@@ -1,11 +1,13 @@
-// The cost of contact: time per body and step. The systems are ellipsoids that fall onto a plane, from the
-// first impacts until they are at rest, and standing towers and pyramids of ten boxes. The program also
-// measures the exponent with which the cost grows with the number of bodies, and the time of each stage.
+// The cost of contact: time per body and step. The systems are solids that fall onto a plane, from the first
+// impacts until they are at rest, alone or as a heap of five layers, and standing towers and pyramids of ten
+// boxes. The solids are ellipsoids, and in up to a hundred bodies every other shape, deformed ones included.
+// The program also measures the exponent with which the cost grows with the number of bodies, and the time of
+// each stage.
 //
-//   contact_bench [FOLDER] [MAX]
+//   contact_bench [FOLDER] [MAX] [NAME]
 //
 // Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
-// largest number of bodies (10000).
+// largest number of bodies (10000). NAME: measures only the systems whose name contains this text.
 //
 // Columns of the table, with the names of the columns of the files if they differ:
 //   step               mean time of a step in the whole run (step_us_per_body)
@@ -42,11 +44,81 @@ constexpr double kStep = 2e-3, kDuration = 1;
 
 enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: three parameters per body
 
+/// A kind of solid: shape, chain of deformations, and rest values for three numbers between 0 and 1.
+struct Kind {
+  const char *name, *shape;
+  std::vector<std::string> chain;
+  Part::Named (*rest)(double a, double b, double c);
+  int max_heap = 100;  ///< largest number of bodies in a heap; less for pairs that need a numerical search
+};
+Part::Named axes(double a, double b, double c) {
+  return {{"a1", 0.06 + 0.04 * a}, {"a2", 0.06 + 0.04 * b}, {"a3", 0.06 + 0.04 * c}};
+}
+template <int eps1, int eps2>  // in tenths
+Part::Named superquadric(double a, double b, double c) {
+  Part::Named rest = axes(a, b, c);
+  rest.push_back({"eps1", 0.1 * eps1});
+  rest.push_back({"eps2", 0.1 * eps2});
+  return rest;
+}
+Part::Named with(Part::Named rest, const char* name, double value) {
+  rest.push_back({name, value});
+  return rest;
+}
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all{
+      {"ellipsoid", "ellipsoid", {}, axes},
+      {"box", "box", {}, axes},
+      {"cylinder", "cylinder", {}, axes},
+      {"cone", "cone", {}, [](double a, double b, double c) { return with(axes(a, b, c), "t", -0.5); }},
+      {"capsule",
+       "capsule",
+       {},
+       [](double a, double, double c) {
+         return Part::Named{{"r", 0.04 + 0.02 * a}, {"l", 0.06 + 0.04 * c}};
+       }},
+      {"superellipsoid, 1", "superellipsoid", {}, superquadric<10, 10>},
+      {"superellipsoid, 0.5", "superellipsoid", {}, superquadric<5, 5>},
+      {"superellipsoid, 0.1", "superellipsoid", {}, superquadric<1, 1>},
+      {"superellipsoid, 1.5", "superellipsoid", {}, superquadric<15, 15>},
+      {"sheared cylinder",
+       "cylinder",
+       {"shear"},
+       [](double a, double b, double c) { return with(axes(a, b, c), "shear.sx", 0.3); }},
+      {"supertoroid",
+       "supertoroid",
+       {},
+       [](double a, double, double c) {
+         const double tube = 0.02 + 0.01 * a;
+         return Part::Named{{"a1", tube}, {"a2", tube}, {"a3", 0.02 + 0.01 * c}, {"a4", 3}};
+       },
+       10},
+      {"tapered ellipsoid",
+       "ellipsoid",
+       {"taper"},
+       [](double a, double b, double c) { return with(axes(a, b, c), "taper.tx", -0.3); },
+       10},
+      {"twisted box",
+       "box",
+       {"twist"},
+       [](double a, double b, double c) { return with(axes(a, b, c), "twist.angle", 0.5); },
+       10},
+      {"bent capsule",
+       "capsule",
+       {"bend"},
+       [](double a, double, double c) {
+         return Part::Named{{"r", 0.04 + 0.02 * a}, {"l", 0.06 + 0.04 * c}, {"bend.angle", 0.5}};
+       },
+       10}};
+  return all;
+}
+
 struct System {
-  const char* name;
+  std::string name;
   Bodies bodies;
-  int layers;      ///< number of layers on top of each other; not used for pyramids
-  int max_bodies;  ///< largest number of bodies
+  int layers;                  ///< number of layers on top of each other; not used for pyramids
+  int max_bodies;              ///< largest number of bodies
+  const Kind* kind = nullptr;  ///< the solids that fall; not used for towers and pyramids
 };
 
 /// A row of the table. Times are in microseconds per body and step.
@@ -90,17 +162,21 @@ void build_pyramids(MultiBody& body, int n) {
       }
 }
 
-void build_ellipsoids(MultiBody& body, const System& system, int n) {
+void build_solids(MultiBody& body, const System& system, int n) {
   const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n) / system.layers)));
   for (int i = 0; i < n; ++i) {
     const double a = spread(i, 0.6180339887498949), b = spread(i, 0.7548776662466927),
                  c = spread(i, 0.5698402909980532);
-    Part& part = body.add(make_part("body" + std::to_string(i), "ellipsoid", {}, 1000));
-    part.rest({{"a1", 0.06 + 0.04 * a}, {"a2", 0.06 + 0.04 * b}, {"a3", 0.06 + 0.04 * c}});
+    const Kind& kind = *system.kind;
+    Part& part = body.add(make_part("body" + std::to_string(i), kind.shape, kind.chain, 1000));
+    part.rest(kind.rest(a, b, c));
     const int layer = i / (across * across), place = i % (across * across);
     const Vec3<double> axis = Vec3<double>(a - 0.5, b - 0.5, c - 0.4).normalized();
-    part.place({0.25 * (place % across) + 0.02 * a, 0.25 * (place / across) + 0.02 * b,
-                0.15 + 0.1 * c + 0.35 * layer},
+    // Corners and rims reach farther than the axes; the solids start apart from each other.
+    const bool is_round = &kind == &kinds().front();
+    const double apart = is_round ? 0.25 : 0.45, above = is_round ? 0.35 : 0.45;
+    part.place({apart * (place % across) + 0.02 * a, apart * (place / across) + 0.02 * b,
+                0.15 + 0.1 * c + above * layer},
                Eigen::Quaterniond(Eigen::AngleAxisd(6 * a, axis)));
     if (system.bodies == Bodies::soft)
       part.stiffness({{"a1", 3e4}, {"a2", 3e4}, {"a3", 3e4}}).damping(0, 2e-3);
@@ -111,7 +187,7 @@ void build(MultiBody& body, const System& system, int n) {
   if (system.bodies == Bodies::pyramids)
     build_pyramids(body, n);
   else
-    (system.bodies == Bodies::towers ? build_towers : build_ellipsoids)(body, system, n);
+    (system.bodies == Bodies::towers ? build_towers : build_solids)(body, system, n);
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
@@ -192,6 +268,7 @@ Cost measure(const System& system, int n) {
 int main(int argc, char** argv) try {
   const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
   const int max_bodies = argc > 2 ? std::atoi(argv[2]) : 10000;
+  const std::string only = argc > 3 ? argv[3] : "";
   auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
   char calibration[128];
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
@@ -204,22 +281,28 @@ int main(int argc, char** argv) try {
                                   "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
   bench::TableFile exponents_file(in_folder("contact_exponents.csv"),
                                   std::string(calibration) + "system,step,still_step\n");
-  const std::vector<System> systems{{"rigid", Bodies::rigid, 1, 10000},
-                                    {"3 parameters", Bodies::soft, 1, 10000},
-                                    {"rigid, heap", Bodies::rigid, 5, 1000},
-                                    {"towers of ten", Bodies::towers, 10, 1000},
-                                    {"pyramids of ten", Bodies::pyramids, 10, 1000}};
+  const Kind& ellipsoid = kinds().front();
+  std::vector<System> systems{{"rigid", Bodies::rigid, 1, 10000, &ellipsoid},
+                              {"3 parameters", Bodies::soft, 1, 10000, &ellipsoid},
+                              {"rigid, heap", Bodies::rigid, 5, 1000, &ellipsoid},
+                              {"towers of ten", Bodies::towers, 10, 1000},
+                              {"pyramids of ten", Bodies::pyramids, 10, 1000}};
+  for (const Kind& kind : kinds())
+    systems.push_back({std::string(kind.name) + ", plane", Bodies::rigid, 1, 100, &kind});
+  for (const Kind& kind : kinds())
+    systems.push_back({std::string(kind.name) + ", heap", Bodies::rigid, 5, kind.max_heap, &kind});
   std::printf(
-      "microseconds per body and step\n%-15s %6s %8s | %8s %8s %8s %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
+      "microseconds per body and step\n%-27s %6s %8s | %8s %8s %8s %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
       "system", "bodies", "contacts", "step", "at rest", "warm", "cold", "asleep", "motion", "near", "find",
       "solve", "deepest", "residual", "fallbacks");
   for (const System& system : systems) {
+    if (system.name.find(only) == std::string::npos) continue;
     std::vector<Cost> costs;
     for (int n = 10; n <= std::min(max_bodies, system.max_bodies); n *= 10) {
       const Cost c = measure(system, n);
       costs.push_back(c);
       std::printf(
-          "%-15s %6d %8d | %8.3f %8.3f %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
+          "%-27s %6d %8d | %8.3f %8.3f %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
           c.system.c_str(), c.bodies, c.contacts, c.step, c.resting_step, c.warm, c.cold, c.asleep, c.motion,
           c.near, c.find, c.solve, c.deepest, c.residual, c.fallbacks);
       std::fflush(stdout);
@@ -230,9 +313,9 @@ int main(int argc, char** argv) try {
     if (costs.size() < 2) continue;
     const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),
                  resting = bench::exponent(costs, &Cost::bodies, &Cost::resting_step);
-    std::printf("%-15s total time grows as the number of bodies to the power %.3f (step), %.3f (at rest)\n",
-                system.name, moving, resting);
-    exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, resting);
+    std::printf("%-27s total time grows as the number of bodies to the power %.3f (step), %.3f (at rest)\n",
+                system.name.c_str(), moving, resting);
+    exponents_file.row("\"%s\",%.4f,%.4f\n", system.name.c_str(), moving, resting);
   }
   return 0;
 } catch (const std::exception& error) {
