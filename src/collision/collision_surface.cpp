@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "hull.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
@@ -170,11 +172,15 @@ std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector
 }  // namespace
 
 CollisionSurface::CollisionSurface(const Part& part)
-    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution) {
-  if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest()))
+    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution), has_hull_(Hull::exists(part)) {
+  if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest())) {
     thickness_ = 2 * axes->minCoeff();
-  else
+  } else if (has_hull_) {
+    const ParameterValues<double> values = part.parameters().rest();
+    thickness_ = Hull(part, values).extents().minCoeff();
+  } else {
     thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
+  }
 }
 
 const CollisionSurface::Samples& CollisionSurface::samples() const {

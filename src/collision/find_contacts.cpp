@@ -12,6 +12,7 @@
 #include <pliant/collision/ellipsoid_points.h>
 #include <pliant/collision/mesh/find_on_mesh.h>
 #include <pliant/math/index.h>
+#include "touch_plane.h"
 
 #include "finder_scratch.h"
 #include "outline.h"
@@ -177,12 +178,48 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
         add({model_->parts()[at(a)].part->label(p, values), p, height});
     return;
   }
+  if (uses_hull(a)) {
+    std::vector<CollisionSurface::LowPoint>& points = scratch_->low_points;
+    points.clear();
+    const Vec3<double> along = placed.R.transpose() * normal.unitOrthogonal();
+    touch_plane(*model_->parts()[at(a)].part, values, surface.thickness(), {n, offset, along}, max_gap,
+                scratch_->hull_points, points);
+    for (const CollisionSurface::LowPoint& low : points) add(low);
+    return;
+  }
   const Eigen::Matrix3Xd& p = points_of(a);
   const VecX<double> heights = (p.transpose() * n).array() + offset;
   const std::size_t first = found.size();
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, max_gap, field))
     add(low);
   if (has_fixed_shape(a)) keep_outline(found, first, model_->parts()[at(a)].part->size());
+}
+
+/// Whether the contacts of a part follow from its support function at the present parameters.
+bool ContactFinder::uses_hull(int i) const {
+  return surfaces_[at(i)]->has_hull() &&
+         model_->parts()[at(i)].part->shape().has_support(scratch_->values[at(i)].b.data());
+}
+
+bool ContactFinder::follow(const State& state, double t, Contact& contact) const {
+  const int a = contact.a.part;
+  if (contact.plane < 0 || contact.a.at_nodes()) return false;
+  place(state, t, a);
+  const ParameterValues<double>& values = scratch_->values[at(a)];
+  const Part& part = *model_->parts()[at(a)].part;
+  if (!uses_hull(a) || !part.shape().has_faces(values.b.data())) return false;
+  place_planes(t);
+  const Scratch::PlaneNow& plane = scratch_->planes[at(contact.plane)];
+  if (!plane.acts) return false;
+  scratch_->material[0] = contact.a.material;
+  contact.x = scratch_->parts[at(a)].c + scratch_->parts[at(a)].R * part.s(scratch_->material, values).col(0);
+  contact.gap = contact.normal.dot(contact.x - plane.point);
+  contact.prescribed_velocity = plane.prescribed_velocity;
+  return true;
+}
+
+double ContactFinder::merge_distance(const Contact& contact) const {
+  return one_point_distance(surfaces_[at(contact.a.part)]->thickness());
 }
 
 void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double max_gap,
@@ -305,6 +342,32 @@ void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, do
                std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
 }
 
+/// Appends the contacts of two convex parts that are not both ellipsoids. Returns whether the pair is such a
+/// pair.
+bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, double max_gap,
+                                       std::vector<Contact>& found) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  if (!surfaces_[at(a)]->has_hull() || !surfaces_[at(b)]->has_hull() || (one.axes && other.axes))
+    return false;
+  const Hull hull_a(*model_->parts()[at(a)].part, scratch_->values[at(a)]),
+      hull_b(*model_->parts()[at(b)].part, scratch_->values[at(b)]);
+  if (!hull_a.is_convex() || !hull_b.is_convex()) return false;
+  const PlacedHull placed_a{hull_a, one.c, one.R, surfaces_[at(a)]->thickness()},
+      placed_b{hull_b, other.c, other.R, surfaces_[at(b)]->thickness()};
+  const Separation apart = separation(placed_a, placed_b, max_gap);
+  if (apart.gap > max_gap) return true;
+  // Of two points the one on the smaller part is the contact point, so that the lever arm of a rolling part
+  // is exact.
+  std::vector<PairTouch>& touches = scratch_->of_hulls;
+  touches.clear();
+  touch_pair(placed_a, placed_b, apart, max_gap, hull_b.size() < hull_a.size(), touches);
+  const std::size_t first = found.size();
+  for (const PairTouch& touch : touches)
+    found.push_back(contact_at(touch.x, apart.normal, touch.gap, a, b, rule));
+  keep_outline(found, first, std::min(hull_a.size(), hull_b.size()));
+  return true;
+}
+
 /// Appends the contact of a ball and a box if its gap is at most max_gap (m). Returns whether the pair is a
 /// ball and a box.
 bool ContactFinder::find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
@@ -329,14 +392,16 @@ bool ContactFinder::are_apart(int a, int b, double max_gap) const {
   return d.squaredNorm() - extent(one) - extent(other) > max_gap * d.norm();
 }
 
-/// Appends the contacts of a pair of parts. Boxes, balls on boxes and deep overlaps have closed forms. For
-/// all others both surfaces are searched; a point found from both is added once.
+/// Appends the contacts of a pair of parts. Boxes, balls on boxes and ellipsoids have closed forms, and
+/// convex parts use their support functions. For all others both surfaces are searched; a point found from
+/// both is added once.
 void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, max_gap)) return;
   if (scratch_->parts[at(a)].half && scratch_->parts[at(b)].half)
     return find_between_boxes(a, b, rule, max_gap, found);
   if (find_ball_on_box(a, b, rule, max_gap, found)) return;
+  if (find_between_hulls(a, b, rule, max_gap, found)) return;
   if (find_deep_overlap(a, b, rule, found)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();

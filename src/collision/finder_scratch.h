@@ -10,6 +10,8 @@
 #include <pliant/collision/find_contacts.h>
 #include <pliant/collision/mesh/find_on_mesh.h>
 
+#include "hull_pair.h"
+
 namespace pliant {
 
 /// Largest distance by which the surface of a part is outside the box of its sample points, in sizes of the
@@ -63,6 +65,9 @@ struct ContactFinder::Scratch {
   double wide_reach = 0, wide_margin = 0;
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
+  std::vector<PairTouch> of_hulls;
+  std::vector<Vec3<double>> hull_points;
+  std::vector<CollisionSurface::LowPoint> low_points;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;
   std::vector<int> nodes;

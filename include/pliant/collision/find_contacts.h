@@ -1,6 +1,7 @@
 // Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
-// other. The contacts of most shapes are the lowest points of each part over planes, obstacles and the parts
-// near it. Ellipsoids, boxes, and balls on boxes have closed forms.
+// other. Ellipsoids, boxes and balls on boxes have closed forms. Contacts of other undeformed or sheared
+// parts with planes, and with each other if they are convex, follow from support functions. Other contacts
+// are the lowest points of each part over obstacles and over the parts near it.
 #pragma once
 
 #include <memory>
@@ -35,6 +36,13 @@ class ContactFinder {
                             const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
+  /// Moves a contact with a plane to another state and time (s): the material point of side a stays, x and
+  /// gap change. Returns false, and changes nothing, for other contacts and for parts without faces, whose
+  /// contact points follow from the state alone.
+  bool follow(const State& state, double t, Contact& contact) const;
+  /// Points of a part that are nearer to each other than this (m) are one contact. contact: its side a is a
+  /// part without local deformation.
+  double merge_distance(const Contact& contact) const;
   /// Velocity of side a relative to side b at a contact, m/s, world. It includes the prescribed motion
   /// (Contact::prescribed_velocity).
   Vec3<double> velocity(const State& state, const Contact& contact) const;
@@ -78,6 +86,7 @@ class ContactFinder {
   class OverPart;
   void place(const State& state, double t, int part) const;
   bool has_fixed_shape(int part) const;
+  bool uses_hull(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
   /// after: the end of a step that is done; nullptr for a coming step.
   Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;
@@ -95,6 +104,8 @@ class ContactFinder {
   Contact contact_at(const Vec3<double>& x, const Vec3<double>& normal, double gap, int a, int b,
                      const ContactRule& rule) const;
   void find_between_boxes(int a, int b, const ContactRule& rule, double max_gap,
+                          std::vector<Contact>& found) const;
+  bool find_between_hulls(int a, int b, const ContactRule& rule, double max_gap,
                           std::vector<Contact>& found) const;
   bool find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
                         std::vector<Contact>& found) const;

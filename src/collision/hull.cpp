@@ -1,0 +1,157 @@
+#include "hull.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace pliant {
+
+namespace {
+
+/// A nearly flat face is found by turning the direction by this angle (rad), multiplied by the distance below
+/// which points are one and divided by the size of the part. So the points found are nearly as far as the
+/// farthest point.
+constexpr double kTurn = 1e-5;
+/// An end face is represented by its rim if the cosine of the angle between its normal and the direction is
+/// at least this.
+constexpr double kEndFaceCosine = 0.9998;
+/// A face is level if its points differ in height by at most this, in units of `one_point`.
+constexpr double kLevel = 1e-10;
+
+}  // namespace
+
+bool Hull::exists(const Part& part) {
+  const std::vector<LinkInfo>& links = part.parameters().links();
+  return part.shape().hull_pieces() > 0 && std::all_of(links.begin(), links.end(), [](const LinkInfo& link) {
+           return link.sections == Sections::stay_affine;
+         });
+}
+
+Hull::Hull(const Part& part, const ParameterValues<double>& values)
+    : shape_(&part.shape()),
+      a_(values.b.data()),
+      size_(part.size()),
+      is_undeformed_(part.parameters().links().empty()),
+      F_(Mat3<double>::Identity()) {
+  if (!is_undeformed_) F_ = part.chain_gradient(Eigen::Matrix3Xd::Zero(3, 1), values).front();
+}
+
+Vec3<double> Hull::support(const Vec3<double>& m, int piece) const {
+  if (is_undeformed_) return shape_->support(m, a_, piece);
+  return F_ * shape_->support(Vec3<double>((F_.transpose() * m).normalized()), a_, piece);
+}
+
+Vec3<double> Hull::support(const Vec3<double>& m) const {
+  Vec3<double> best = support(m, 0);
+  for (int piece = 1; piece < pieces(); ++piece)
+    if (const Vec3<double> x = support(m, piece); m.dot(x) > m.dot(best)) best = x;
+  return best;
+}
+
+Vec3<double> Hull::support(const Vec3<double>& m, int piece, Mat3<double>& slope) const {
+  using D = Dual<3>;
+  const Vec3<double> pulled = F_.transpose() * m;
+  const Vec3<D> x = shape_->support(
+      Vec3<D>(D::variable(pulled[0], 0), D::variable(pulled[1], 1), D::variable(pulled[2], 2)), a_, piece);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) slope(r, c) = x[r].d[static_cast<std::size_t>(c)];
+  const Vec3<double> value(x[0].v, x[1].v, x[2].v);
+  if (is_undeformed_) return value;
+  slope = F_ * slope * F_.transpose();
+  return F_ * value;
+}
+
+Vec3<double> Hull::end_face_normal(int piece) const {
+  const Vec3<double> z = (piece == 0 ? 1.0 : -1.0) * Vec3<double>::UnitZ();
+  if (is_undeformed_) return z;
+  return (F_.inverse().transpose() * z).normalized();
+}
+
+Vec3<double> Hull::extents() const {
+  Vec3<double> extents;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3<double> axis = Vec3<double>::Unit(k);
+    extents[k] = support(axis)[k] - support(-axis)[k];
+  }
+  return extents;
+}
+
+/// Appends the points of a piece that are farthest if m turns by a small angle. Faces of superquadrics have
+/// their corners on the diagonals of the coordinate axes. Adds the farthest point, too, unless the face is
+/// level: then it is an arbitrary point of the face.
+void Hull::add_face(const Vec3<double>& m, int piece, double one_point,
+                    std::vector<Vec3<double>>& points) const {
+  const std::size_t first = points.size();
+  const Vec3<double> farthest = support(m, piece);
+  Eigen::Index most = 0;
+  m.cwiseAbs().maxCoeff(&most);
+  Vec3<double> e1 = Vec3<double>::Unit((most + 1) % 3);
+  e1 = (e1 - m.dot(e1) * m).normalized();
+  const Vec3<double> e2 = m.cross(e1);
+  bool level = false, represents_corner = false;
+  const double angle = kTurn * one_point / size_;
+  for (const Vec3<double>& direction : std::array<Vec3<double>, 4>{e1 + e2, e1 - e2, -e1 - e2, e2 - e1}) {
+    const Vec3<double> p = support(Vec3<double>((m + angle * direction).normalized()), piece);
+    auto is_near = [&](const Vec3<double>& other) { return (p - other).norm() < one_point; };
+    if (is_near(farthest)) {
+      represents_corner = true;
+      continue;
+    }
+    if (std::any_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), is_near)) continue;
+    points.push_back(p);
+    level = level || m.dot(farthest - p) < kLevel * one_point;
+  }
+  if (!level || represents_corner) points.push_back(farthest);
+}
+
+void Hull::add_rim(const Vec3<double>& m, const Vec3<double>& along, int piece, double one_point, int n_rim,
+                   std::vector<Vec3<double>>& points) const {
+  const Vec3<double> across = m.cross(along), farthest = support(m, piece);
+  bool level = false;
+  for (int k = 0; k < n_rim; ++k) {
+    const double angle = (2 * k + 1) * kPi / n_rim;
+    points.push_back(support(Vec3<double>(std::cos(angle) * along + std::sin(angle) * across), piece));
+    level = level || m.dot(farthest - points.back()) < kLevel * one_point;
+  }
+  if (!level) points.push_back(farthest);
+}
+
+int Hull::parallel_end_face(const Vec3<double>& m, double one_point) const {
+  for (int piece = 0; has_end_faces() && piece < 2; ++piece) {
+    if (m.dot(end_face_normal(piece)) < kEndFaceCosine) continue;
+    const Vec3<double> e1 = m.unitOrthogonal(), e2 = m.cross(e1);
+    auto is_wide = [&](const Vec3<double>& e) {
+      return (support(e, piece) - support(Vec3<double>(-e), piece)).norm() > 2 * one_point;
+    };
+    if (is_wide(e1) || is_wide(e2)) return piece;  // not a tip
+  }
+  return -1;
+}
+
+void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, double one_point, int n_rim,
+                           std::vector<Vec3<double>>& points) const {
+  const int end_face = parallel_end_face(m, one_point);
+  const bool flat = has_flat_regions();
+  const std::size_t first = points.size();
+  for (int piece = 0; piece < pieces(); ++piece) {
+    if (piece == end_face) {
+      add_rim(m, along, piece, one_point, n_rim, points);
+    } else if (flat) {
+      add_face(m, piece, one_point, points);
+    } else {
+      const Vec3<double> p = support(m, piece);
+      const auto twin =
+          std::find_if(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
+                       [&](const Vec3<double>& other) { return (p - other).norm() < one_point; });
+      if (twin == points.end())
+        points.push_back(p);
+      else if (m.dot(p) > m.dot(*twin))
+        *twin = p;
+    }
+  }
+}
+
+}  // namespace pliant

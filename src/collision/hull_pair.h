@@ -1,0 +1,46 @@
+// Separation and contact points of two convex parts, from their support functions. With the normal n from b
+// to a (unit vector, world), the separation along n is
+//   s(n) = min over x in a of n . x  -  max over y in b of n . y.
+// Its largest value over all n is the gap. Its gradient is x - y, with the points x and y that attain it. If
+// the parts overlap deeply, s has several local maxima; the best one of several starts is used.
+#pragma once
+
+#include <vector>
+
+#include "hull.h"
+
+namespace pliant {
+
+/// A hull at a place in the world.
+struct PlacedHull {
+  const Hull& hull;
+  Vec3<double> c;    ///< origin of the body frame, m
+  Mat3<double> R;    ///< body frame to world
+  double thickness;  ///< least extent, m
+  Vec3<double> into_body(const Vec3<double>& direction) const { return R.transpose() * direction; }
+  Vec3<double> to_world(const Vec3<double>& p) const { return c + R * p; }
+};
+
+/// Where two parts touch, or nearly touch.
+struct Separation {
+  Vec3<double> normal;  ///< n, unit vector from b to a, world
+  double gap = 0;       ///< s(n), m; negative: depth of the overlap
+};
+
+/// Returns the normal of the largest separation. Returns early, with any normal along which s exceeds max_gap
+/// (m), if there is one.
+Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap);
+
+/// A point where two parts touch.
+struct PairTouch {
+  Vec3<double> x;  ///< m, world: on a, or for points of b inside the face of a on b
+  double gap;      ///< m
+};
+
+/// Appends the contact points of two parts for their separation: one point where curved surfaces touch, the
+/// two ends of a common segment, or the corners of the common polygon of two faces. A gap is at most max_gap
+/// (m). on_b: whether single points are on the surface of b instead of a.
+void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& separation, double max_gap,
+                bool on_b, std::vector<PairTouch>& found);
+
+}  // namespace pliant

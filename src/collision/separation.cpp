@@ -1,0 +1,387 @@
+// The largest separation of two convex parts. A sequence of small quadratic programs on the unit sphere finds
+// it. At a normal n, each piece i of a has the value a_i = n . x_i of its support point x_i and each piece j
+// of b the value b_j = n . y_j, so that s = min_i a_i - max_j b_j. In the tangent plane of n, with the step
+// t,
+//   maximise  alpha - beta - t.H t / 2  subject to  alpha <= a_i + x_i.t for all i,  beta >= b_j + y_j.t for
+//   all j.
+// H has the curvatures of the pieces, weighted by the multipliers of the last step, and s from the length of
+// n + t. Edges and faces of polyhedral parts are sets of active pieces; smooth parts have one active piece
+// each.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "hull_pair.h"
+
+namespace pliant {
+
+namespace {
+
+constexpr int kMaxSteps = 60;
+/// Most pieces of a part in a quadratic program: those that are nearest to the other part.
+constexpr int kMaxPieces = 4;
+/// Most pieces of a hull.
+constexpr std::size_t kMaxHullPieces = 8;
+/// Longest step of the normal, rad.
+constexpr double kLongestStep = 0.5;
+/// The search ends if the step is shorter than this (rad), or if it improves s by less than kMinGain, in
+/// sizes.
+constexpr double kShortestStep = 1e-10, kMinGain = 1e-15;
+/// Values that differ by at most this, in sizes, are equal.
+constexpr double kEqual = 1e-12;
+/// Least curvature radius in H, in sizes; it grows by kStiffening if a step fails.
+constexpr double kMinRadius = 1e-9, kStiffening = 16;
+/// An overlap deeper than this share of the thickness of the thinner part has several local maxima; the
+/// search then starts from all axes of both parts.
+constexpr double kDeep = 0.1;
+/// A step that fails is halved this often before H changes.
+constexpr int kMaxHalvings = 6;
+/// A step that gains at least this share of the predicted increase of s is not halved.
+constexpr double kEnough = 0.25;
+/// The search starts this far (rad) from an axis of a part, because nearly flat faces have infinite radii of
+/// curvature there.
+constexpr double kOffAxis = 0.05;
+/// A direction is the normal of an end face if the cosine of their angle exceeds this.
+constexpr double kFaceCosine = 1 - 1e-14;
+/// Most steps of the test whether two faces overlap, and the angle (rad) by which the search leaves the
+/// normal of a face if they do not.
+constexpr int kMaxFaceSteps = 20;
+constexpr double kLeaveFace = 0.1;
+
+/// A piece of one part at a normal.
+struct Piece {
+  int number;
+  double value;           // n . point, m
+  Vec3<double> point;     // relative to the middle of the pair, m
+  Eigen::Vector2d slope;  // point in the tangent plane
+  Eigen::Matrix2d H;      // radii of curvature, positive semidefinite
+};
+
+/// The pieces of one part that are nearest to the other part, at a normal n. side: -1 for part a, whose
+/// support points are those in the direction -n; 1 for part b.
+struct Side {
+  const PlacedHull& part;
+  Vec3<double> origin;  // of the body frame, relative to the middle of the pair
+  double side;
+  std::array<Piece, kMaxPieces> pieces{};
+  int count = 0;
+  std::array<double, kMaxHullPieces> weights{};  // multipliers of the last step, by number of the piece
+
+  /// Returns the radii of curvature of the nearest pieces, weighted by the multipliers.
+  Eigen::Matrix2d curvature() const {
+    Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+    double all = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const double weight = weights[static_cast<std::size_t>(pieces[k].number)];
+      sum += weight * pieces[k].H;
+      all += weight;
+    }
+    return all > 0 ? Eigen::Matrix2d(sum / all) : pieces[0].H;
+  }
+  void set_weights(const std::array<double, kMaxPieces>& of_pieces) {
+    weights.fill(0);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      weights[static_cast<std::size_t>(pieces[k].number)] = of_pieces[k];
+  }
+  Vec3<double> point(const Vec3<double>& n, int piece) const {
+    return origin + part.R * part.hull.support(part.into_body(side * n), piece);
+  }
+  /// Returns n . x of the nearest piece.
+  double value(const Vec3<double>& n) const {
+    double best = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < part.hull.pieces(); ++i) best = std::max(best, side * n.dot(point(n, i)));
+    return side * best;
+  }
+  /// Returns the point, among those nearest to the other part at n, that is farthest in a direction e normal
+  /// to n. equal: values of n . x that differ by less (m) are equal.
+  Vec3<double> face_point(const Vec3<double>& n, const Vec3<double>& e, double equal) const {
+    const double nearest = value(n);
+    Vec3<double> best = Vec3<double>::Zero();
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < part.hull.pieces(); ++i) {
+      const bool is_face =
+          part.hull.has_end_faces() && side * n.dot(part.R * part.hull.end_face_normal(i)) > kFaceCosine;
+      const Vec3<double> x =
+          is_face ? Vec3<double>(origin + part.R * part.hull.support(part.into_body(e), i)) : point(n, i);
+      if (side * (nearest - n.dot(x)) > equal || !(e.dot(x) > farthest)) continue;
+      farthest = e.dot(x);
+      best = x;
+    }
+    return best;
+  }
+  /// Evaluates the nearest pieces. E: 3 x 2, basis of the tangent plane of n.
+  void evaluate(const Vec3<double>& n, const Eigen::Matrix<double, 3, 2>& E) {
+    count = 0;
+    for (int i = 0; i < part.hull.pieces(); ++i) {
+      const Vec3<double> x = point(n, i);
+      const double value = n.dot(x);
+      int place = std::min(count, kMaxPieces);
+      while (place > 0 && side * value > side * pieces[static_cast<std::size_t>(place - 1)].value) {
+        if (place < kMaxPieces)
+          pieces[static_cast<std::size_t>(place)] = pieces[static_cast<std::size_t>(place - 1)];
+        --place;
+      }
+      if (place == kMaxPieces) continue;
+      Piece& piece = pieces[static_cast<std::size_t>(place)];
+      piece.number = i;
+      piece.value = value;
+      piece.point = x;
+      count = std::min(count + 1, kMaxPieces);
+    }
+    for (int k = 0; k < count; ++k) {
+      Piece& piece = pieces[static_cast<std::size_t>(k)];
+      Mat3<double> slope;
+      part.hull.support(part.into_body(side * n), piece.number, slope);
+      piece.slope = E.transpose() * piece.point;
+      piece.H = E.transpose() * part.R * slope * part.R.transpose() * E;
+    }
+  }
+};
+
+/// The step of one quadratic program, with the multipliers of the pieces.
+struct Step {
+  Eigen::Vector2d t = Eigen::Vector2d::Zero();
+  std::array<double, kMaxPieces> of_a{}, of_b{};
+  double gain = -std::numeric_limits<double>::infinity();  // predicted increase of s, m
+};
+
+/// The quadratic program at one normal.
+class Program {
+ public:
+  Program(const Side& a, const Side& b, const Eigen::Matrix2d& H, double equal)
+      : a_(a), b_(b), H_(H), H_inverse_(H.inverse()), equal_(equal) {}
+
+  /// Tries all sets of active pieces, at most two more than one piece of each part, and returns the step of
+  /// the first set that satisfies the optimality conditions.
+  bool solve(Step& step) {
+    for (int extra = 0; extra <= 2; ++extra)
+      for (int i = 0; i < a_.count; ++i)
+        for (int j = 0; j < b_.count; ++j)
+          if (solve_from(i, j, extra, step)) return true;
+    return false;
+  }
+
+ private:
+  /// A further active piece: its row d and right side r, so that d.t = r.
+  struct Active {
+    bool of_a;
+    int piece;
+    Eigen::Vector2d d;
+    double r;
+  };
+  Active active_a(int base, int i) const {
+    const Piece &first = a_.pieces[at(base)], &other = a_.pieces[at(i)];
+    return {true, i, other.slope - first.slope, first.value - other.value};
+  }
+  Active active_b(int base, int j) const {
+    const Piece &first = b_.pieces[at(base)], &other = b_.pieces[at(j)];
+    return {false, j, first.slope - other.slope, other.value - first.value};
+  }
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+  bool solve_from(int i, int j, int extra, Step& step) {
+    const Eigen::Vector2d g = a_.pieces[at(i)].slope - b_.pieces[at(j)].slope;
+    if (extra == 0) return accept(i, j, {}, 0, H_inverse_ * g, {}, step);
+    std::array<Active, 2 * kMaxPieces> others;
+    int n = 0;
+    for (int k = i + 1; k < a_.count; ++k) others[at(n++)] = active_a(i, k);
+    for (int k = j + 1; k < b_.count; ++k) others[at(n++)] = active_b(j, k);
+    for (int k = 0; k < n; ++k) {
+      const Active& one = others[at(k)];
+      if (extra == 1) {
+        const Eigen::Vector2d along = H_inverse_ * one.d;
+        const double stiffness = one.d.dot(along);
+        if (!(stiffness > 0)) continue;
+        const double lambda = (one.r - along.dot(g)) / stiffness;
+        if (accept(i, j, {one, one}, 1, H_inverse_ * (g + lambda * one.d), {lambda, 0}, step)) return true;
+        continue;
+      }
+      for (int l = k + 1; l < n; ++l) {
+        const Active& two = others[at(l)];
+        Eigen::Matrix2d D;
+        D.row(0) = one.d;
+        D.row(1) = two.d;
+        const double scale = one.d.norm() * two.d.norm();
+        if (!(std::abs(D.determinant()) > kEqual * scale)) continue;
+        const Eigen::Vector2d t = D.inverse() * Eigen::Vector2d(one.r, two.r),
+                              lambda = D.transpose().inverse() * (H_ * t - g);
+        if (accept(i, j, {one, two}, 2, t, lambda, step)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Accepts a step if the multipliers are not negative and no other piece is violated.
+  bool accept(int i, int j, const std::array<Active, 2>& active, int n, const Eigen::Vector2d& t,
+              const Eigen::Vector2d& lambda, Step& step) const {
+    if (!t.allFinite()) return false;
+    Step next;
+    next.t = t;
+    next.of_a[at(i)] = next.of_b[at(j)] = 1;
+    for (int k = 0; k < n; ++k) {
+      if (!(lambda[k] >= -kEqual)) return false;
+      auto& own = active[at(k)].of_a ? next.of_a : next.of_b;
+      own[at(active[at(k)].piece)] += lambda[k];
+      own[at(active[at(k)].of_a ? i : j)] -= lambda[k];
+    }
+    if (!(next.of_a[at(i)] >= -kEqual && next.of_b[at(j)] >= -kEqual)) return false;
+    const double alpha = a_.pieces[at(i)].value + a_.pieces[at(i)].slope.dot(t),
+                 beta = b_.pieces[at(j)].value + b_.pieces[at(j)].slope.dot(t);
+    for (int k = 0; k < a_.count; ++k)
+      if (a_.pieces[at(k)].value + a_.pieces[at(k)].slope.dot(t) < alpha - equal_) return false;
+    for (int k = 0; k < b_.count; ++k)
+      if (b_.pieces[at(k)].value + b_.pieces[at(k)].slope.dot(t) > beta + equal_) return false;
+    next.gain = alpha - beta - 0.5 * t.dot(H_ * t) - (a_.pieces[0].value - b_.pieces[0].value);
+    step = next;
+    return true;
+  }
+
+  const Side &a_, &b_;
+  Eigen::Matrix2d H_, H_inverse_;
+  double equal_;
+};
+
+/// The search for the largest separation.
+class Search {
+ public:
+  Search(const PlacedHull& a, const PlacedHull& b)
+      : d_(a.c - b.c),
+        a_{a, 0.5 * d_, -1},
+        b_{b, -0.5 * d_, 1},
+        size_(std::max(a.hull.size(), b.hull.size())) {}
+
+  double s(const Vec3<double>& n) const { return a_.value(n) - b_.value(n); }
+
+  /// Tests whether n, a normal of an end face, is a local maximum of s. It is one if the sets of nearest
+  /// points of both parts overlap in their projection along n. If not, turns n away from the face. The
+  /// shortest vector between the projected sets is found by Gilbert's method.
+  bool is_maximum_at_face(Vec3<double>& n) const {
+    const double equal = kEqual * size_;
+    auto difference = [&](const Vec3<double>& e) -> Vec3<double> {  // least point of a - b along e
+      const Vec3<double> w = a_.face_point(n, -e, equal) - b_.face_point(n, e, equal);
+      return w - n.dot(w) * n;
+    };
+    Vec3<double> v = difference(n.unitOrthogonal());
+    bool apart = false;
+    for (int k = 0; k < kMaxFaceSteps && !apart && v.norm() > equal; ++k) {
+      const Vec3<double> w = difference(v.normalized()), to_w = w - v;
+      apart = v.dot(w) > 0;
+      if (!(to_w.squaredNorm() > 0)) break;
+      v += std::clamp(-v.dot(to_w) / to_w.squaredNorm(), 0.0, 1.0) * to_w;
+    }
+    if (v.norm() <= equal) return true;
+    n = (n + kLeaveFace * v.normalized()).normalized();
+    return false;
+  }
+
+  /// Returns a normal near n, outside the coordinate planes of both parts.
+  Vec3<double> off_axis(const Vec3<double>& n) const {
+    const Vec3<double> aside = d_ - d_.dot(n) * n;
+    const bool aligned = !(aside.norm() > kOffAxis * d_.norm());
+    const Vec3<double> e1 = aligned ? n.unitOrthogonal() : Vec3<double>(aside.normalized());
+    return (n + kOffAxis * (e1 + 0.3 * n.cross(e1))).normalized();
+  }
+
+  /// Returns the separation along a direction if it exceeds that of `best`, else `best`.
+  Separation better(const Separation& best, const Vec3<double>& direction) const {
+    const Vec3<double> n = direction.normalized();
+    const double s_n = s(n);
+    return s_n > best.gap ? Separation{n, s_n} : best;
+  }
+
+  /// Ascends from a normal to a local maximum of s, or until s exceeds max_gap (m).
+  Separation ascend(Vec3<double> n, double max_gap) {
+    double s_n = s(n), radius = kMinRadius * size_;
+    a_.weights.fill(1);
+    b_.weights.fill(1);
+    for (int k = 0; k < kMaxSteps && !(s_n > max_gap); ++k) {
+      Eigen::Matrix<double, 3, 2> E;
+      E.col(0) = n.unitOrthogonal();
+      E.col(1) = n.cross(E.col(0));
+      a_.evaluate(n, E);
+      b_.evaluate(n, E);
+      const Eigen::Matrix2d curvature = a_.curvature() + b_.curvature();
+      bool improved = false;
+      for (; radius < size_ * 1e6; radius *= kStiffening) {
+        Eigen::Matrix2d H = curvature;
+        // The length of n + t adds s; H stays positive definite where the overlap is shallow.
+        if (s_n > 0 || H.determinant() > 2 * std::abs(s_n) * H.trace()) H.diagonal().array() += s_n;
+        H.diagonal().array() += radius;
+        Step step;
+        if (!Program(a_, b_, H, kEqual * size_).solve(step)) continue;
+        a_.set_weights(step.of_a);
+        b_.set_weights(step.of_b);
+        const double length = step.t.norm();
+        if (length < kShortestStep || step.gain < kMinGain * size_) return better({n, s_n}, n + E * step.t);
+        if (length > kLongestStep) step.t *= kLongestStep / length;
+        // Halve the step as long as this helps, unless it gains enough.
+        Separation longest{n, s_n};
+        for (int halving = 0; halving < kMaxHalvings; ++halving, step.t *= 0.5) {
+          const Separation next = better(longest, n + E * step.t);
+          const bool helps = next.gap > longest.gap;
+          if (!helps && longest.gap > s_n) break;
+          longest = next;
+          if (longest.gap - s_n > kEnough * step.gain) break;
+        }
+        improved = longest.gap > s_n;
+        n = longest.normal;
+        s_n = longest.gap;
+        if (!improved) continue;
+        radius = std::max(kMinRadius * size_, radius / (kStiffening * kStiffening));
+        break;
+      }
+      if (!improved) break;
+    }
+    return {n, s_n};
+  }
+
+ private:
+  Vec3<double> d_;
+  Side a_, b_;
+  double size_;
+};
+
+}  // namespace
+
+Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) {
+  Search search(a, b);
+  const Vec3<double> d = a.c - b.c;
+  // The start is the best one of the line of centres, the axes of the parts and the normals of end faces.
+  Separation best{Vec3<double>::UnitZ(), -std::numeric_limits<double>::infinity()};
+  bool at_end_face = false;
+  auto consider = [&](const Vec3<double>& n, bool is_end_face) {
+    const double s = search.s(n);
+    if (s > best.gap || (s == best.gap && is_end_face)) {
+      best = {n, s};
+      at_end_face = is_end_face;
+    }
+    return best.gap > max_gap;
+  };
+  if (d.squaredNorm() > 0 && consider(d.normalized(), false)) return best;
+  for (const PlacedHull* part : {&a, &b}) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3<double> axis = part->R.col(k);
+      if (consider(axis.dot(d) < 0 ? Vec3<double>(-axis) : axis, false)) return best;
+    }
+    for (int k = 0; part->hull.has_end_faces() && k < 2; ++k)
+      if (consider((part == &a ? -1.0 : 1.0) * (part->R * part->hull.end_face_normal(k)), true)) return best;
+  }
+  const double deep = -kDeep * std::min(a.thickness, b.thickness);
+  auto ascend_from = [&](const Vec3<double>& n) {
+    if (const Separation found = search.ascend(n, max_gap); found.gap > best.gap) best = found;
+  };
+  Vec3<double> n = best.normal;
+  const bool is_flat = a.hull.has_flat_regions() || b.hull.has_flat_regions();
+  if (!(at_end_face && search.is_maximum_at_face(n))) ascend_from(is_flat ? search.off_axis(n) : n);
+  if (best.gap > deep) return best;
+  for (const PlacedHull* part : {&a, &b})
+    for (int k = 0; k < 3; ++k)
+      for (const double sign : {1.0, -1.0}) ascend_from(search.off_axis(sign * part->R.col(k)));
+  return best;
+}
+
+}  // namespace pliant

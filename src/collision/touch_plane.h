@@ -1,0 +1,30 @@
+// Contact points of a part and a plane, from its support function. Only the convex hull of a part can touch a
+// plane, so the points are exact for every shape, also for a torus.
+#pragma once
+
+#include <vector>
+
+#include <pliant/collision/collision_surface.h>
+
+#include "hull.h"
+
+namespace pliant {
+
+/// A plane in the frame of a part.
+struct PlaneInBody {
+  Vec3<double> normal;  ///< unit vector, out of the half space that the plane bounds
+  double offset;        ///< height of the origin of the frame over the plane, m
+  Vec3<double> along;   ///< unit vector in the plane; it is fixed to the plane, not to the part
+};
+
+/// Returns the distance below which two points of a part are one contact, m. thickness: least extent of the
+/// part, m.
+double one_point_distance(double thickness);
+
+/// Appends the points of a part that touch a plane (Hull::touching_points) and are at most max_gap (m) above
+/// it. thickness: least extent of the part, m. points: scratch storage.
+void touch_plane(const Part& part, const ParameterValues<double>& values, double thickness,
+                 const PlaneInBody& plane, double max_gap, std::vector<Vec3<double>>& points,
+                 std::vector<CollisionSurface::LowPoint>& found);
+
+}  // namespace pliant
