@@ -110,10 +110,18 @@ Point2 nearest_point(const std::vector<Point2>& own, const std::vector<Point2>& 
   };
   for (std::size_t i = 0; i < own.size(); ++i)
     for (std::size_t j = 0; j < other.size(); ++j) {
-      consider(own[i], on_edge(other, j, own[i]));
+      consider(own[i], other.size() > 1 ? on_edge(other, j, own[i]) : other[0]);
       consider(on_edge(own, i, other[j]), other[j]);
     }
   return sum / count;
+}
+
+/// Returns the point of a segment or polygon that is nearest to p.
+Point2 into_face(const std::vector<Point2>& corners, const Point2& p) {
+  bool inside = corners.size() > 2;
+  for (std::size_t k = 0; k < corners.size() && inside; ++k)
+    inside = cross(corners[(k + 1) % corners.size()] - corners[k], p - corners[k]) >= 0;
+  return inside ? p : nearest_point(corners, {p}, 0);
 }
 
 /// Drops points that are nearer than `same` to an earlier one.
@@ -239,6 +247,10 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
     const Point2 p = nearest_point(own.corners, other.corners, rounding);
     x = origin + E * p + own.height_at(p) * n;
   }
+  // The point of a nearly flat region is moved into the face of the other part.
+  const Face& face = of_own >= of_other ? other : own;
+  if (std::max(of_own, of_other) == 1 && face.corners.size() > 1)
+    x += E * (into_face(face.corners, E.transpose() * (x - origin)) - E.transpose() * (x - origin));
   found.push_back({x, separation.gap});
 }
 

@@ -26,7 +26,7 @@ class JsonDocument {
 
   /// Reads a file ("-" is standard input). Throws FileError if it cannot be read or has more than kMaxBytes,
   /// and SceneError after a syntax fault, a number that overflows, or an excess over kMaxDepth or kMaxValues.
-  /// Faults that leave the syntax intact (duplicate keys, numbers that round to zero, \u0000 in a string) are
+  /// Faults that leave the syntax intact (duplicate keys, numbers that round to zero, the character U+0000) are
   /// added to `faults`, and reading continues.
   static JsonDocument read(const std::string& path, Diagnostics& faults);
   /// Reads a text; `name` replaces the file name in messages. Throws and reports faults as read() does.
