@@ -26,8 +26,8 @@ class JsonDocument {
 
   /// Reads a file ("-" is standard input). Throws FileError if it cannot be read or has more than kMaxBytes,
   /// and SceneError after a syntax fault, a number that overflows, or an excess over kMaxDepth or kMaxValues.
-  /// Faults that leave the syntax intact (duplicate keys, numbers that round to zero, the character U+0000) are
-  /// added to `faults`, and reading continues.
+  /// Faults that leave the syntax intact (duplicate keys, numbers that round to zero, the character U+0000)
+  /// are added to `faults`, and reading continues.
   static JsonDocument read(const std::string& path, Diagnostics& faults);
   /// Reads a text; `name` replaces the file name in messages. Throws and reports faults as read() does.
   static JsonDocument parse(std::string name, std::string text, Diagnostics& faults);
