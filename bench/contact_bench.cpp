@@ -22,6 +22,7 @@
 //   fallbacks          clusters of contacts without a solution, see step_counters.h
 //
 // The stages are timed one by one in separate loops, so that the processor caches contain their data.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

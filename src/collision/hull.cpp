@@ -11,6 +11,8 @@ namespace pliant {
 
 namespace {
 
+/// Points of a part that are nearer to each other than this, in thicknesses, are one point.
+constexpr double kOnePoint = 0.05;
 /// A nearly flat face is found by turning the direction by this angle (rad), multiplied by the distance below
 /// which points are one and divided by the size of the part. So the points found are nearly as far as the
 /// farthest point.
@@ -21,7 +23,18 @@ constexpr double kEndFaceCosine = 0.9998;
 /// A face is level if its points differ in height by at most this, in units of `one_point`.
 constexpr double kLevel = 1e-10;
 
+/// Returns the first of the points from number `first` on that is nearer to p than `distance` (m), or end().
+std::vector<Vec3<double>>::iterator find_near(std::vector<Vec3<double>>& points, std::size_t first,
+                                              const Vec3<double>& p, double distance) {
+  return std::find_if(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
+                      [&](const Vec3<double>& other) { return (p - other).norm() < distance; });
+}
+
 }  // namespace
+
+double one_point_distance(double thickness) {
+  return kOnePoint * thickness;
+}
 
 bool Hull::exists(const Part& part) {
   const std::vector<LinkInfo>& links = part.parameters().links();
@@ -95,12 +108,11 @@ void Hull::add_face(const Vec3<double>& m, int piece, double one_point,
   const double angle = kTurn * one_point / size_;
   for (const Vec3<double>& direction : std::array<Vec3<double>, 4>{e1 + e2, e1 - e2, -e1 - e2, e2 - e1}) {
     const Vec3<double> p = support(Vec3<double>((m + angle * direction).normalized()), piece);
-    auto is_near = [&](const Vec3<double>& other) { return (p - other).norm() < one_point; };
-    if (is_near(farthest)) {
+    if ((p - farthest).norm() < one_point) {
       represents_corner = true;
       continue;
     }
-    if (std::any_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), is_near)) continue;
+    if (find_near(points, first, p, one_point) != points.end()) continue;
     points.push_back(p);
     level = level || m.dot(farthest - p) < kLevel * one_point;
   }
@@ -110,13 +122,18 @@ void Hull::add_face(const Vec3<double>& m, int piece, double one_point,
 void Hull::add_rim(const Vec3<double>& m, const Vec3<double>& along, int piece, double one_point, int n_rim,
                    std::vector<Vec3<double>>& points) const {
   const Vec3<double> across = m.cross(along), farthest = support(m, piece);
+  std::array<Vec3<double>, kMaxRimPoints> rim;
+  const auto n = static_cast<std::size_t>(n_rim);
   bool level = false;
-  for (int k = 0; k < n_rim; ++k) {
-    const double angle = (2 * k + 1) * kPi / n_rim;
-    points.push_back(support(Vec3<double>(std::cos(angle) * along + std::sin(angle) * across), piece));
-    level = level || m.dot(farthest - points.back()) < kLevel * one_point;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double angle = static_cast<double>(2 * k + 1) * kPi / n_rim;
+    rim[k] = support(Vec3<double>(std::cos(angle) * along + std::sin(angle) * across), piece);
+    level = level || m.dot(farthest - rim[k]) < kLevel * one_point;
   }
+  const std::size_t first = points.size();
   if (!level) points.push_back(farthest);
+  for (std::size_t k = 0; k < n; ++k)
+    if (find_near(points, first, rim[k], one_point) == points.end()) points.push_back(rim[k]);
 }
 
 int Hull::parallel_end_face(const Vec3<double>& m, double one_point) const {
@@ -131,9 +148,8 @@ int Hull::parallel_end_face(const Vec3<double>& m, double one_point) const {
   return -1;
 }
 
-void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, double one_point, int n_rim,
-                           std::vector<Vec3<double>>& points) const {
-  const int end_face = parallel_end_face(m, one_point);
+void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face, double one_point,
+                           int n_rim, std::vector<Vec3<double>>& points) const {
   const bool flat = has_flat_regions();
   const std::size_t first = points.size();
   for (int piece = 0; piece < pieces(); ++piece) {
@@ -143,9 +159,7 @@ void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, dou
       add_face(m, piece, one_point, points);
     } else {
       const Vec3<double> p = support(m, piece);
-      const auto twin =
-          std::find_if(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
-                       [&](const Vec3<double>& other) { return (p - other).norm() < one_point; });
+      const auto twin = find_near(points, first, p, one_point);
       if (twin == points.end())
         points.push_back(p);
       else if (m.dot(p) > m.dot(*twin))

@@ -9,6 +9,13 @@
 
 namespace pliant {
 
+/// Most points that represent the rim of an end face.
+inline constexpr int kMaxRimPoints = 8;
+
+/// Returns the distance below which two points of a part are one contact, m. thickness: least extent of the
+/// part, m.
+double one_point_distance(double thickness);
+
 class Hull {
  public:
   /// Returns whether the hull of a part is known: its shape has a support function, and its chain is affine.
@@ -18,7 +25,7 @@ class Hull {
 
   int pieces() const { return shape_->hull_pieces(); }
   /// Whether a single piece has nearly flat regions, other than end faces.
-  bool has_flat_regions() const { return shape_->has_faces(a_) && !shape_->has_end_faces(); }
+  bool has_flat_regions() const { return shape_->has_flat_regions(a_); }
   bool has_end_faces() const { return shape_->has_end_faces(); }
   /// The largest half extent of the part at rest, m.
   double size() const { return size_; }
@@ -38,19 +45,20 @@ class Hull {
 
   /// Returns the end face (0 or 1) whose normal is nearly m and that is wider than 2 one_point (m), or -1.
   int parallel_end_face(const Vec3<double>& m, double one_point) const;
-  /// Appends points of the rim of an end face that is nearly parallel to a plane with the normal m: n_rim
-  /// points that keep their places relative to the unit vector `along`, which is normal to m, and not to the
-  /// part; and the farthest point in the direction m, unless the face is level. Then that is an arbitrary
-  /// point of the rim.
+  /// Appends points of the rim of an end face that is nearly parallel to a plane with the normal m: the
+  /// farthest point in the direction m, unless the face is level and this is an arbitrary point of the rim;
+  /// and n_rim points (at most kMaxRimPoints) that keep their places relative to the unit vector `along`,
+  /// which is normal to m, and not to the part. Of points nearer to each other than one_point (m) the first
+  /// one is kept.
   void add_rim(const Vec3<double>& m, const Vec3<double>& along, int piece, double one_point, int n_rim,
                std::vector<Vec3<double>>& points) const;
   /// Appends the points that may touch a plane with the normal m: the farthest point of each piece in the
-  /// direction m; for an end face that is nearly parallel to the plane its rim (add_rim); and if a piece has
-  /// nearly flat faces, the points that are farthest if m turns by a small angle, in four directions. So a
+  /// direction m; for end_face, the result of parallel_end_face(), its rim (add_rim); and if a piece has
+  /// nearly flat regions, the points that are farthest if m turns by a small angle, in four directions. So a
   /// face is represented by its corners, an edge or a generator by its ends, and a curved surface by one
-  /// point. m: unit vector. one_point: points of a piece nearer to each other than this (m) are one point.
-  void touching_points(const Vec3<double>& m, const Vec3<double>& along, double one_point, int n_rim,
-                       std::vector<Vec3<double>>& points) const;
+  /// point. m: unit vector.
+  void touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face, double one_point,
+                       int n_rim, std::vector<Vec3<double>>& points) const;
 
  private:
   void add_face(const Vec3<double>& m, int piece, double one_point, std::vector<Vec3<double>>& points) const;

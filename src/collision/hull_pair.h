@@ -27,19 +27,19 @@ struct Separation {
   double gap = 0;       ///< s(n), m; negative: depth of the overlap
 };
 
-/// Returns the normal of the largest separation. Returns early, with any normal along which s exceeds max_gap
-/// (m), if there is one.
+/// Returns the largest separation that is found. If s exceeds max_gap (m) along a normal of the search,
+/// returns that normal at once.
 Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap);
 
 /// A point where two parts touch.
 struct PairTouch {
-  Vec3<double> x;  ///< m, world: on a, or for points of b inside the face of a on b
+  Vec3<double> x;  ///< m, world; on a, or with on_b (touch_pair) on b
   double gap;      ///< m
 };
 
 /// Appends the contact points of two parts for their separation: one point where curved surfaces touch, the
 /// two ends of a common segment, or the corners of the common polygon of two faces. A gap is at most max_gap
-/// (m). on_b: whether single points are on the surface of b instead of a.
+/// (m). on_b: whether the points are on the surface of b instead of a.
 void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& separation, double max_gap,
                 bool on_b, std::vector<PairTouch>& found);
 

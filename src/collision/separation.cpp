@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -24,8 +25,6 @@ namespace {
 constexpr int kMaxSteps = 60;
 /// Most pieces of a part in a quadratic program: those that are nearest to the other part.
 constexpr int kMaxPieces = 4;
-/// Most pieces of a hull.
-constexpr std::size_t kMaxHullPieces = 8;
 /// Longest step of the normal, rad.
 constexpr double kLongestStep = 0.5;
 /// The search ends if the step is shorter than this (rad), or if it improves s by less than kMinGain, in
@@ -57,8 +56,15 @@ struct Piece {
   int number;
   double value;           // n . point, m
   Vec3<double> point;     // relative to the middle of the pair, m
+  Mat3<double> slopes;    // derivative of the support point by the direction, body frame, m
   Eigen::Vector2d slope;  // point in the tangent plane
   Eigen::Matrix2d H;      // radii of curvature, positive semidefinite
+};
+
+/// A point of a part that is nearest to the other part at a normal, or an end face of such points.
+struct Nearest {
+  int end_face;    // its number; -1: only the point x is nearest
+  Vec3<double> x;  // relative to the middle of the pair, m
 };
 
 /// The pieces of one part that are nearest to the other part, at a normal n. side: -1 for part a, whose
@@ -69,7 +75,8 @@ struct Side {
   double side;
   std::array<Piece, kMaxPieces> pieces{};
   int count = 0;
-  std::array<double, kMaxHullPieces> weights{};  // multipliers of the last step, by number of the piece
+  std::array<double, static_cast<std::size_t>(kMaxHullPieces)>
+      weights{};  // multipliers of the last step, by number of the piece
 
   /// Returns the radii of curvature of the nearest pieces, weighted by the multipliers.
   Eigen::Matrix2d curvature() const {
@@ -92,23 +99,31 @@ struct Side {
   }
   /// Returns n . x of the nearest piece.
   double value(const Vec3<double>& n) const {
-    double best = -std::numeric_limits<double>::infinity();
-    for (int i = 0; i < part.hull.pieces(); ++i) best = std::max(best, side * n.dot(point(n, i)));
-    return side * best;
+    return n.dot(origin + part.R * part.hull.support(part.into_body(side * n)));
   }
-  /// Returns the point, among those nearest to the other part at n, that is farthest in a direction e normal
-  /// to n. equal: values of n . x that differ by less (m) are equal.
-  Vec3<double> face_point(const Vec3<double>& n, const Vec3<double>& e, double equal) const {
+  /// Appends the points nearest to the other part at n; of an end face with the normal n its number only.
+  /// equal: values of n . x that differ by less (m) are equal.
+  void find_nearest(const Vec3<double>& n, double equal, std::vector<Nearest>& found) const {
     const double nearest = value(n);
-    Vec3<double> best = Vec3<double>::Zero();
-    double farthest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < part.hull.pieces(); ++i) {
+      const Vec3<double> x = point(n, i);
+      if (side * (nearest - n.dot(x)) > equal) continue;
       const bool is_face =
           part.hull.has_end_faces() && side * n.dot(part.R * part.hull.end_face_normal(i)) > kFaceCosine;
+      found.push_back({is_face ? i : -1, x});
+    }
+  }
+  /// Returns the point that is farthest in a direction e among those of find_nearest(). e: normal to n.
+  Vec3<double> farthest(const std::vector<Nearest>& nearest, const Vec3<double>& e) const {
+    Vec3<double> best = nearest.front().x;
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Nearest& one : nearest) {
       const Vec3<double> x =
-          is_face ? Vec3<double>(origin + part.R * part.hull.support(part.into_body(e), i)) : point(n, i);
-      if (side * (nearest - n.dot(x)) > equal || !(e.dot(x) > farthest)) continue;
-      farthest = e.dot(x);
+          one.end_face < 0
+              ? one.x
+              : Vec3<double>(origin + part.R * part.hull.support(part.into_body(e), one.end_face));
+      if (!(e.dot(x) > most)) continue;
+      most = e.dot(x);
       best = x;
     }
     return best;
@@ -116,28 +131,29 @@ struct Side {
   /// Evaluates the nearest pieces. E: 3 x 2, basis of the tangent plane of n.
   void evaluate(const Vec3<double>& n, const Eigen::Matrix<double, 3, 2>& E) {
     count = 0;
+    const Vec3<double> m = part.into_body(side * n);
+    const bool all = part.hull.pieces() <= kMaxPieces;  // then no piece is left out
     for (int i = 0; i < part.hull.pieces(); ++i) {
-      const Vec3<double> x = point(n, i);
-      const double value = n.dot(x);
+      Piece next;
+      next.number = i;
+      next.point = origin + part.R * (all ? part.hull.support(m, i, next.slopes) : part.hull.support(m, i));
+      next.value = n.dot(next.point);
       int place = std::min(count, kMaxPieces);
-      while (place > 0 && side * value > side * pieces[static_cast<std::size_t>(place - 1)].value) {
+      while (place > 0 && side * next.value > side * pieces[static_cast<std::size_t>(place - 1)].value) {
         if (place < kMaxPieces)
           pieces[static_cast<std::size_t>(place)] = pieces[static_cast<std::size_t>(place - 1)];
         --place;
       }
       if (place == kMaxPieces) continue;
-      Piece& piece = pieces[static_cast<std::size_t>(place)];
-      piece.number = i;
-      piece.value = value;
-      piece.point = x;
+      pieces[static_cast<std::size_t>(place)] = next;
       count = std::min(count + 1, kMaxPieces);
     }
+    const Eigen::Matrix<double, 3, 2> in_body = part.R.transpose() * E;
     for (int k = 0; k < count; ++k) {
       Piece& piece = pieces[static_cast<std::size_t>(k)];
-      Mat3<double> slope;
-      part.hull.support(part.into_body(side * n), piece.number, slope);
+      if (!all) part.hull.support(m, piece.number, piece.slopes);
       piece.slope = E.transpose() * piece.point;
-      piece.H = E.transpose() * part.R * slope * part.R.transpose() * E;
+      piece.H = in_body.transpose() * piece.slopes * in_body;
     }
   }
 };
@@ -246,9 +262,9 @@ class Program {
 };
 
 /// The search for the largest separation.
-class Search {
+class SeparationSearch {
  public:
-  Search(const PlacedHull& a, const PlacedHull& b)
+  SeparationSearch(const PlacedHull& a, const PlacedHull& b)
       : d_(a.c - b.c),
         a_{a, 0.5 * d_, -1},
         b_{b, -0.5 * d_, 1},
@@ -256,13 +272,16 @@ class Search {
 
   double s(const Vec3<double>& n) const { return a_.value(n) - b_.value(n); }
 
-  /// Tests whether n, a normal of an end face, is a local maximum of s. It is one if the sets of nearest
-  /// points of both parts overlap in their projection along n. If not, turns n away from the face. The
-  /// shortest vector between the projected sets is found by Gilbert's method.
+  /// Returns whether n, a normal of an end face, is certainly a local maximum of s: the sets of nearest
+  /// points of both parts overlap in their projection along n. Otherwise turns n away from the face.
+  /// Gilbert's method (1966) finds the shortest vector between the projected sets.
   bool is_maximum_at_face(Vec3<double>& n) const {
     const double equal = kEqual * size_;
+    std::vector<Nearest> of_a, of_b;
+    a_.find_nearest(n, equal, of_a);
+    b_.find_nearest(n, equal, of_b);
     auto difference = [&](const Vec3<double>& e) -> Vec3<double> {  // least point of a - b along e
-      const Vec3<double> w = a_.face_point(n, -e, equal) - b_.face_point(n, e, equal);
+      const Vec3<double> w = a_.farthest(of_a, -e) - b_.farthest(of_b, e);
       return w - n.dot(w) * n;
     };
     Vec3<double> v = difference(n.unitOrthogonal());
@@ -348,7 +367,7 @@ class Search {
 }  // namespace
 
 Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) {
-  Search search(a, b);
+  SeparationSearch search(a, b);
   const Vec3<double> d = a.c - b.c;
   // The start is the best one of the line of centres, the axes of the parts and the normals of end faces.
   Separation best{Vec3<double>::UnitZ(), -std::numeric_limits<double>::infinity()};

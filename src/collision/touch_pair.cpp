@@ -6,9 +6,10 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "hull_pair.h"
-#include "touch_plane.h"
+#include "polygon.h"
 
 namespace pliant {
 
@@ -17,122 +18,18 @@ namespace {
 /// Points are part of a face if they are at most this far behind its nearest point, in units of the distance
 /// below which points are one. All points of an end face are.
 constexpr double kFaceDepth = 0.2;
-constexpr int kPairRimPoints = 8;
-
-using Point2 = Eigen::Vector2d;
 
 /// A face of one part: the corners of the convex hull of its points in the projection along the normal,
 /// counter-clockwise, and its height n . x as a linear function of the place.
 struct Face {
   std::vector<Point2> corners;
   Vec3<double> height = Vec3<double>::Zero();  ///< (h_0, slopes): h = h_0 + slopes . place
-  bool is_point = false;  ///< whether one point is the nearest, although nearly flat regions may be about it
+  /// Whether one point of the part is the nearest: there is one corner, or the part has nearly flat regions,
+  /// on which it touches at one point exactly.
+  bool is_point = false;
 
   double height_at(const Point2& p) const { return height[0] + height.tail<2>().dot(p); }
 };
-
-double cross(const Point2& a, const Point2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// Returns the convex hull by Andrew's monotone chains (1979).
-std::vector<Point2> convex_hull(std::vector<Point2> points) {
-  std::sort(points.begin(), points.end(), [](const Point2& a, const Point2& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  std::vector<Point2> around;
-  auto add_side = [&](auto begin, auto end) {
-    const std::size_t start = around.size();
-    for (auto p = begin; p != end; ++p) {
-      while (around.size() >= start + 2 &&
-             !(cross(around.back() - around.end()[-2], *p - around.end()[-2]) > 0))
-        around.pop_back();
-      around.push_back(*p);
-    }
-    around.pop_back();
-  };
-  if (points.size() < 3) return points;
-  add_side(points.begin(), points.end());
-  add_side(points.rbegin(), points.rend());
-  return around;
-}
-
-/// The part of a segment or polygon on the left of the directed line from p to q.
-std::vector<Point2> clip(const std::vector<Point2>& corners, const Point2& p, const Point2& q) {
-  std::vector<Point2> kept;
-  auto side = [&](const Point2& x) { return cross(q - p, x - p); };
-  const std::size_t n = corners.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const Point2 &from = corners[k], &to = corners[(k + 1) % n];
-    const double s = side(from), s_to = side(to);
-    if (s >= 0) kept.push_back(from);
-    if (n == 2 && k == 1) break;
-    if ((s < 0) != (s_to < 0)) kept.push_back(from + s / (s - s_to) * (to - from));
-  }
-  return kept;
-}
-
-/// Returns the common part of two segments: if they are parallel, to within `same` over the length of the
-/// first one, the ends of their overlap; else their crossing point, or nothing.
-std::vector<Point2> common_of_segments(const std::vector<Point2>& one, const std::vector<Point2>& other,
-                                       double same) {
-  const Point2 d = one[1] - one[0], along = other[1] - other[0];
-  const double turn = cross(along, d);
-  if (std::abs(turn) > same * std::max(along.norm(), d.norm())) {
-    const double share = cross(along, Point2(other[0] - one[0])) / turn;
-    return {one[0] + std::clamp(share, 0.0, 1.0) * d};
-  }
-  const Point2 across(-along.y(), along.x());
-  const std::vector<Point2> kept = clip(one, other[0], other[0] - across);
-  return kept.empty() ? kept : clip(kept, other[1], other[1] + across);
-}
-
-/// Returns the point of the segment or outline `own` that is nearest to the segment or outline `other`; if
-/// edges are parallel, the middle of the nearest points. same: distances that differ by less (m) are equal.
-Point2 nearest_point(const std::vector<Point2>& own, const std::vector<Point2>& other, double same) {
-  auto on_edge = [](const std::vector<Point2>& corners, std::size_t k, const Point2& p) -> Point2 {
-    const Point2 &from = corners[k], edge = corners[(k + 1) % corners.size()] - from;
-    return from + std::clamp(edge.dot(p - from) / edge.squaredNorm(), 0.0, 1.0) * edge;
-  };
-  double least = std::numeric_limits<double>::infinity();
-  Point2 sum(0, 0);
-  int count = 0;
-  auto consider = [&](const Point2& point, const Point2& opposite) {
-    const double distance = (point - opposite).norm();
-    if (distance > least + same) return;
-    if (distance < least - same) {
-      sum.setZero();
-      count = 0;
-    }
-    least = std::min(least, distance);
-    sum += point;
-    ++count;
-  };
-  for (std::size_t i = 0; i < own.size(); ++i)
-    for (std::size_t j = 0; j < other.size(); ++j) {
-      consider(own[i], other.size() > 1 ? on_edge(other, j, own[i]) : other[0]);
-      consider(on_edge(own, i, other[j]), other[j]);
-    }
-  return sum / count;
-}
-
-/// Returns the point of a segment or polygon that is nearest to p.
-Point2 into_face(const std::vector<Point2>& corners, const Point2& p) {
-  bool inside = corners.size() > 2;
-  for (std::size_t k = 0; k < corners.size() && inside; ++k)
-    inside = cross(corners[(k + 1) % corners.size()] - corners[k], p - corners[k]) >= 0;
-  return inside ? p : nearest_point(corners, {p}, 0);
-}
-
-/// Drops points that are nearer than `same` to an earlier one.
-void merge(std::vector<Point2>& points, double same) {
-  std::size_t n = 0;
-  for (const Point2& p : points)
-    if (std::none_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n),
-                     [&](const Point2& other) { return (p - other).norm() < same; }))
-      points[n++] = p;
-  points.resize(n);
-}
 
 /// Returns the nearest face of a part. side: -1 for part a, 1 for part b.
 Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<double, 3, 2>& E,
@@ -141,9 +38,9 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
   std::vector<Vec3<double>> points;
   const Vec3<double> m = part.into_body(side * n), axis = part.into_body(E.col(0));
   if (const int end_face = part.hull.parallel_end_face(m, same); end_face >= 0) {
-    part.hull.add_rim(m, axis, end_face, same, kPairRimPoints, points);
+    part.hull.add_rim(m, axis, end_face, same, kMaxRimPoints, points);
   } else {
-    part.hull.touching_points(m, axis, same, kPairRimPoints, points);
+    part.hull.touching_points(m, axis, end_face, same, kMaxRimPoints, points);
     double farthest = m.dot(points[0]);
     for (const Vec3<double>& p : points) farthest = std::max(farthest, m.dot(p));
     points.erase(
@@ -178,14 +75,16 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
     slopes = moment / spread.trace();
   face.height << mean - slopes.dot(middle), slopes;
   merge(face.corners, same);
-  face.corners = convex_hull(std::move(face.corners));
+  std::vector<Point2> outline;
+  for (const std::size_t k : convex_hull(face.corners)) outline.push_back(face.corners[k]);
+  face.corners = std::move(outline);
   face.is_point = face.corners.size() == 1 || part.hull.has_flat_regions();
   return face;
 }
 
 /// Returns the common part of two faces in the projection along the normal: corners of a polygon, ends of a
-/// segment, a crossing point of two segments, or nothing. If one of the faces is a point, also a crossing
-/// point is left out. same: see merge().
+/// segment, a crossing point of two segments, or nothing. Nothing is returned if a face has one corner, and
+/// no crossing point if is_point of a face. same: see merge().
 std::vector<Point2> common_part(const Face& of_a, const Face& of_b, double same) {
   if (of_a.corners.size() == 1 || of_b.corners.size() == 1) return {};
   const bool clip_a = of_b.corners.size() > 2;
@@ -216,7 +115,8 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
   const double same = one_point_distance(std::min(a.thickness, b.thickness));
   double deepest = std::numeric_limits<double>::infinity();
   const std::size_t first = found.size();
-  for (const Point2& p : common_part(of_a, of_b, same)) {
+  const std::vector<Point2> common = common_part(of_a, of_b, same);
+  for (const Point2& p : common) {
     // No gap is less than s(n), but a face is not exactly flat.
     const double h_a = of_a.height_at(p), h_b = of_b.height_at(p), gap = std::max(h_a - h_b, separation.gap);
     if (gap > max_gap) continue;
@@ -243,6 +143,8 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
     x = support(own_part, side);
   } else if (of_other > 0) {
     x = support(other_part, -side) - side * separation.gap * n;
+  } else if (!common.empty()) {
+    x = support(own_part, side);
   } else {  // faces whose polygons miss each other, although the rims that they represent touch
     const Point2 p = nearest_point(own.corners, other.corners, rounding);
     x = origin + E * p + own.height_at(p) * n;
@@ -250,7 +152,7 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
   // The point of a nearly flat region is moved into the face of the other part.
   const Face& face = of_own >= of_other ? other : own;
   if (std::max(of_own, of_other) == 1 && face.corners.size() > 1)
-    x += E * (into_face(face.corners, E.transpose() * (x - origin)) - E.transpose() * (x - origin));
+    x += E * (nearest_in(face.corners, E.transpose() * (x - origin)) - E.transpose() * (x - origin));
   found.push_back({x, separation.gap});
 }
 

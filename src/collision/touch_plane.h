@@ -17,10 +17,6 @@ struct PlaneInBody {
   Vec3<double> along;   ///< unit vector in the plane; it is fixed to the plane, not to the part
 };
 
-/// Returns the distance below which two points of a part are one contact, m. thickness: least extent of the
-/// part, m.
-double one_point_distance(double thickness);
-
 /// Appends the points of a part that touch a plane (Hull::touching_points) and are at most max_gap (m) above
 /// it. thickness: least extent of the part, m. points: scratch storage.
 void touch_plane(const Part& part, const ParameterValues<double>& values, double thickness,

@@ -25,34 +25,29 @@ struct Kind {
   std::vector<std::string> chain;
   Part::Named rest;
 };
+Kind superquadric(const char* name, const char* shape, double eps1, double eps2) {
+  return {name, shape, {}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", eps1}, {"eps2", eps2}}};
+}
 const std::vector<Kind>& kinds() {
+  const Part::Named axes{{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}};
+  const Part::Named cylinder{{"a1", 0.06}, {"a2", 0.05}, {"a3", 0.1}};
+  auto with = [&](const char* name, double value) {
+    Part::Named rest = cylinder;
+    rest.emplace_back(name, value);
+    return rest;
+  };
   static const std::vector<Kind> all{
-      {"ellipsoid", "ellipsoid", {}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}}},
-      {"round superellipsoid",
-       "superellipsoid",
-       {},
-       {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", 0.8}, {"eps2", 1.2}}},
-      {"square superellipsoid",
-       "superellipsoid",
-       {},
-       {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", 0.3}, {"eps2", 0.4}}},
-      {"box-like superellipsoid",
-       "superellipsoid",
-       {},
-       {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", 0.1}, {"eps2", 0.1}}},
-      {"pointed superellipsoid",
-       "superellipsoid_radial",
-       {},
-       {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", 1.7}, {"eps2", 1.5}}},
-      {"cylinder", "cylinder", {}, {{"a1", 0.06}, {"a2", 0.05}, {"a3", 0.1}}},
-      {"cone", "cone", {}, {{"a1", 0.06}, {"a2", 0.06}, {"a3", 0.1}, {"t", -1}}},
-      {"frustum", "cone", {}, {{"a1", 0.06}, {"a2", 0.06}, {"a3", 0.1}, {"t", 0.4}}},
+      {"ellipsoid", "ellipsoid", {}, axes},
+      superquadric("round superellipsoid", "superellipsoid", 0.8, 1.2),
+      superquadric("square superellipsoid", "superellipsoid", 0.3, 0.4),
+      superquadric("box-like superellipsoid", "superellipsoid", 0.1, 0.1),
+      superquadric("pointed superellipsoid", "superellipsoid_radial", 1.7, 1.5),
+      {"cylinder", "cylinder", {}, cylinder},
+      {"cone", "cone", {}, with("t", -1)},
+      {"frustum", "cone", {}, with("t", 0.4)},
       {"capsule", "capsule", {}, {{"r", 0.04}, {"l", 0.12}}},
-      {"sheared cylinder",
-       "cylinder",
-       {"shear"},
-       {{"a1", 0.06}, {"a2", 0.05}, {"a3", 0.1}, {"shear.sx", 0.5}}},
-      {"box", "box", {}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}}}};
+      {"sheared cylinder", "cylinder", {"shear"}, with("shear.sx", 0.5)},
+      {"box", "box", {}, axes}};
   return all;
 }
 
@@ -62,7 +57,7 @@ Eigen::Quaterniond random_rotation(Draws& draws) {
       .normalized();
 }
 
-/// Two parts at random orientations; b is at the distance `apart` from a.
+/// Two parts. Part a is at the origin, part b at to_b (m).
 struct Pair {
   MultiBody body;
   Pair(const Kind& a, const Kind& b, const Eigen::Quaterniond& R_a, const Eigen::Quaterniond& R_b,
@@ -133,10 +128,11 @@ TEST_CASE("the gap of convex parts is the largest separation over all normals", 
         double swapped_gap = 1;
         for (const Contact& contact : swapped.contacts(1)) swapped_gap = std::min(swapped_gap, contact.gap);
         if (gap > -0.01) order.note(std::abs(swapped_gap - gap));
-        // A shallow overlap has one maximum. A deep one has several, and one of the highest is found.
+        // A shallow overlap has one maximum. A deep one has several, and the search starts from 13 normals
+        // only.
         double best = gap;
         for (int i = 0; i < 1000; ++i) best = std::max(best, s(draws.vector(1).normalized()));
-        CHECK(best - gap <= (gap < -0.01 ? -0.5 * gap : 1e-8));
+        CHECK(best - gap <= (gap < -0.01 ? -0.3 * gap : 1e-8));
         for (double width = 0.03; width > 1e-9; width *= 0.5)
           for (int i = 0; i < 8; ++i) better.note(s((normal + draws.vector(width)).normalized()) - gap);
       }
@@ -196,6 +192,32 @@ TEST_CASE("stacked parts with flat faces touch at four points or more, symmetric
     CHECK(middle.head<2>().norm() < 1e-9);
     for (const Contact& contact : found) CHECK(std::abs(contact.gap) < 1e-7);
   }
+}
+
+TEST_CASE("a can that leans on a table touches it with its lowest point, in all directions", "[contact]") {
+  for (const double tilt : {1e-3, 0.01, 0.1})
+    for (int k = 0; k < 24; ++k) {
+      CAPTURE(tilt, k);
+      const Vec3<double> axis(std::cos(0.3 * k), std::sin(0.3 * k), 0);
+      const Eigen::Quaterniond R(Eigen::AngleAxisd(tilt, axis));
+      MultiBody body;
+      body.contact.between_parts = true;
+      body.add(make_part("table", "box", {}, 1000)).rest({{"a1", 1}, {"a2", 1}, {"a3", 0.1}});
+      body.add(make_part("can", "cylinder", {}, 1000))
+          .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+          .place({0, 0, 0.1 + 0.1 * (std::cos(tilt) + std::sin(tilt))}, R);
+      const Model model(body);
+      const std::vector<Contact> found = ContactFinder(model).find(model.initial_state(), 0, 1e-7);
+      REQUIRE(!found.empty());
+      const auto lowest = std::min_element(found.begin(), found.end(),
+                                           [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+      CHECK(std::abs(lowest->gap) < 1e-12);
+      const Vec3<double> down = R.inverse() * Vec3<double>(0, 0, -1);
+      const Vec3<double> rim(0.1 * down[0] / down.head<2>().norm(), 0.1 * down[1] / down.head<2>().norm(),
+                             -0.1);
+      const Vec3<double> expected = R * rim;
+      CHECK((lowest->x.head<2>() - expected.head<2>()).norm() < 1e-9);
+    }
 }
 
 }  // namespace convex_pairs_test

@@ -270,7 +270,7 @@ TEST_CASE("parts that collide conserve their momenta, and the energy loss follow
   for (int trial = 0; trial < 3; ++trial) {
     const Vec3<double> spin_a = draws.vector(3), spin_b = draws.vector(3);
     std::vector<double> balance;
-    for (const int steps : {75, 150, 300, 600}) {
+    for (const int steps : {300, 600, 1200}) {
       MultiBody body;
       body.gravity.setZero();
       body.contact.active = true;
@@ -293,10 +293,9 @@ TEST_CASE("parts that collide conserve their momenta, and the energy loss follow
       const Model& model = simulation.model();
       CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
     }
-    CAPTURE(trial, balance[0], balance[1], balance[2], balance[3]);
-    CHECK(balance.back() < 2e-3);
-    // The error is of first order and also depends on when in a step the parts meet.
-    CHECK(balance.back() < 0.5 * *std::max_element(balance.begin(), balance.end()));
+    CAPTURE(trial, balance[0], balance[1], balance[2]);
+    CHECK(balance[0] < 2e-3);
+    for (const int i : {1, 2}) CHECK(balance[i] < 0.6 * balance[i - 1]);  // of first order
   }
 }
 

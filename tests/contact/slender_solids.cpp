@@ -24,7 +24,7 @@ struct Kind {
   bool rolls;                     ///< a solid of revolution that rolls straight on
   Part::Named (*rest)(double r);  ///< r: radius, m
 };
-Part::Named cylinder(double r) {
+Part::Named half_sizes(double r) {
   return {{"a1", r}, {"a2", r}, {"a3", 0.5}};
 }
 Part::Named capsule(double r) {
@@ -34,10 +34,10 @@ Part::Named frustum(double r) {
   return {{"a1", r}, {"a2", r}, {"a3", 0.5}, {"t", 0.3}};
 }
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all{{"cylinder", "cylinder", true, cylinder},
+  static const std::vector<Kind> all{{"cylinder", "cylinder", true, half_sizes},
                                      {"capsule", "capsule", true, capsule},
                                      {"frustum", "cone", false, frustum},
-                                     {"box", "box", false, cylinder}};
+                                     {"box", "box", false, half_sizes}};
   return all;
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("slender solids that are dropped on a plane at an angle come to rest o
         Simulation simulation(body, "rk4");
         test::run(simulation, 4, 2000);
         CHECK(simulation.state().v.norm() < 1e-6);
-        // Mirror symmetry: no motion across, and no rotation but about y.
+        // Mirror symmetry: no motion across, and the only rotation is about y.
         CHECK(std::abs(simulation.state().q[1]) < 1e-8);
         CHECK(std::hypot(simulation.state().q[4], simulation.state().q[6]) < 1e-8);
         const Eigen::Quaterniond end(simulation.state().q[3], simulation.state().q[4],
@@ -124,25 +124,8 @@ TEST_CASE("slender solids topple in the plane in which they lean", "[contact]") 
       }
       CHECK(aside < 1e-9);
       CHECK(aside_at_rest < 1e-6);
-      CHECK(std::abs(simulation.state().q[2]) < 0.1);  // it lies on its side
+      CHECK(simulation.state().q[2] < 2 * r);  // it lies on its side
     }
-}
-
-TEST_CASE("a cylinder that starts deeper in a table than half its thickness is pushed out on the near side",
-          "[contact]") {
-  MultiBody body;
-  body.contact.active = true;
-  test::add(body, "table", "box", {}, 1000)
-      .rest({{"a1", 1}, {"a2", 1}, {"a3", 0.01}})
-      .place({0, 0, -0.01})
-      .fix();
-  test::add(body, "can", "cylinder", {}, 1000)
-      .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
-      .place({0.03, 0.02, 0.085});
-  Simulation simulation(body, "rk4");
-  test::run(simulation, 0.8, 400);
-  CHECK(std::abs(simulation.state().q[2] - 0.1) < 1e-6);
-  CHECK(simulation.state().v.norm() < 1e-6);
 }
 
 }  // namespace slender_solids_test

@@ -99,4 +99,55 @@ TEMPLATE_LIST_TEST_CASE("the gradient of the support function is the support poi
   CHECK(worst < 1e-9);
 }
 
+TEST_CASE("the derivative of the support point of a sphere is its radius, normal to the direction",
+          "[shape]") {
+  using D = Dual<3>;
+  Draws draws(8);
+  for (int i = 0; i < 20; ++i) {
+    const double r = draws.uniform(0.1, 3), length = draws.uniform(0.1, 10);
+    const Vec3<double> m = draws.vector(1).normalized();
+    const Vec3<D> at{D::variable(length * m[0], 0), D::variable(length * m[1], 1),
+                     D::variable(length * m[2], 2)};
+    const Vec3<D> x = Sphere::support<D>(at, Vec<D, 1>(D(r)), 0);
+    Mat3<double> slope;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        slope(row, column) = x[row].d[static_cast<std::size_t>(column)];
+    const Mat3<double> across = Mat3<double>::Identity() - m * m.transpose();
+    CHECK((slope * length - r * across).norm() < 1e-13 * r);
+  }
+}
+
+TEMPLATE_LIST_TEST_CASE("the support point depends on the direction only, and its derivative is symmetric",
+                        "[shape]", AllShapes) {
+  using Shape = TestType;
+  using D = Dual<3>;
+  Draws draws(9);
+  Worst of_length, asymmetric, negative;
+  for (int trial = 0; trial < 24; ++trial) {
+    const auto a = draw_parameters<Shape>(draws, trial);
+    for (int i = 0; i < 50; ++i) {
+      const Vec3<double> m = draws.vector(1).normalized();
+      const double length = draws.uniform(0.1, 10);
+      for (int piece = 0; piece < Shape::hull_pieces; ++piece) {
+        const Vec3<double> one = Shape::template support<double>(m, a, piece),
+                           other = Shape::template support<double>(length * m, a, piece);
+        of_length.note((one - other).norm() / one.norm());
+      }
+      const Vec3<D> m_dual{D::variable(m[0], 0), D::variable(m[1], 1), D::variable(m[2], 2)};
+      const Vec3<D> x = support<Shape, D>(m_dual, a.template cast<D>());
+      Mat3<double> slope;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) slope(r, c) = x[r].d[static_cast<std::size_t>(c)];
+      const double scale = slope.norm() + x[0].v + x[1].v + x[2].v;
+      asymmetric.note((slope - slope.transpose()).norm() / std::abs(scale));
+      const Vec3<double> e = draws.vector(1);
+      negative.note(-e.dot(slope * e) / (slope.norm() + 1e-300));
+    }
+  }
+  CHECK(of_length < 1e-9);  // m is not exactly parallel to its multiple, and flat regions amplify that
+  CHECK(asymmetric < 1e-7);
+  CHECK(negative < 1e-7);
+}
+
 }  // namespace support_test

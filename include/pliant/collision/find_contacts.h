@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,10 +37,10 @@ class ContactFinder {
                             const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Moves a contact with a plane to another state and time (s): the material point of side a stays, x and
-  /// gap change. Returns false, and changes nothing, for other contacts and for parts without faces, whose
-  /// contact points follow from the state alone.
-  bool follow(const State& state, double t, Contact& contact) const;
+  /// Returns a contact with a plane at the state and time of the last call of find(): the material point of
+  /// side a stays; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane
+  /// does not act, and for parts without nearly flat regions, whose contact points follow from the state.
+  std::optional<Contact> follow(const Contact& contact) const;
   /// Points of a part that are nearer to each other than this (m) are one contact. contact: its side a is a
   /// part without local deformation.
   double merge_distance(const Contact& contact) const;

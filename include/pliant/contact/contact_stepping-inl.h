@@ -353,7 +353,7 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
   StepContext step(dynamics_, state, progress.step.work, progress.step.counters, free.end(), free.h);
   resolve_resting(motion, step, progress.clock);
   std::vector<Contact> contacts = finder_.find(state, step.t, resting_.gap());
-  resting_.add_followed(motion.resting, state, step.t, resting_.gap(), contacts);
+  resting_.add_followed(motion.resting, resting_.gap(), contacts);
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
                                 [&](const Contact& c) {
                                   const double gap = resting_.gap(c);

@@ -141,16 +141,17 @@ PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const st
   return longest;
 }
 
-PLIANT_INLINE void RestingContacts::add_followed(const std::vector<Contact>& resting, const State& state,
-                                                 double t, double max_gap,
+PLIANT_INLINE void RestingContacts::add_followed(const std::vector<Contact>& resting, double max_gap,
                                                  std::vector<Contact>& found) const {
-  for (Contact contact : resting) {
-    if (!finder_.follow(state, t, contact) || contact.gap > max_gap) continue;
-    const auto [first, last] = std::equal_range(found.begin(), found.end(), contact, ContactFinder::precedes);
-    const double one_point = finder_.merge_distance(contact);
+  for (const Contact& rested : resting) {
+    const std::optional<Contact> contact = finder_.follow(rested);
+    if (!contact || contact->gap > max_gap) continue;
+    const auto [first, last] =
+        std::equal_range(found.begin(), found.end(), *contact, ContactFinder::precedes);
+    const double one_point = finder_.merge_distance(*contact);
     const bool is_new = std::none_of(
-        first, last, [&](const Contact& other) { return (contact.x - other.x).norm() < one_point; });
-    if (is_new) found.insert(last, contact);
+        first, last, [&](const Contact& other) { return (contact->x - other.x).norm() < one_point; });
+    if (is_new) found.insert(last, *contact);
   }
 }
 
@@ -173,7 +174,7 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
            was_resting(contact, motion, state);
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
-  add_followed(resting, state, motion.end(), max_gap, found);
+  add_followed(resting, max_gap, found);
   std::vector<Contact> contacts;
   for (Contact& contact : found) {
     if (rested(contact))

@@ -34,11 +34,11 @@ class RestingContacts {
   /// Predicts the length of this longest motion (s) at the start of the motion, with gravity (m/s^2) as the
   /// only force.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// Adds contacts that rested before, at their places in `state` at a time t (s), if they are not among the
-  /// contacts found there and their gap is at most max_gap (m). A part that has turned touches with one end
-  /// of a face only, but the other end rested, too. found: in the order of ContactFinder::find().
-  void add_followed(const std::vector<Contact>& resting, const State& state, double t, double max_gap,
-                    std::vector<Contact>& found) const;
+  /// Adds contacts that rested before, at their places in the state of the last call of
+  /// ContactFinder::find(), if they are not in its result `found` and their gap is at most max_gap (m). A
+  /// part that has turned touches with one end of a nearly flat region only, but the other end rested, too.
+  /// Keeps the order of found.
+  void add_followed(const std::vector<Contact>& resting, double max_gap, std::vector<Contact>& found) const;
   /// Returns the contacts at `state`, the end of a motion: those that overlap, and those that rested at the
   /// start and are still near, because rounding or the motion may have opened them. Contact::since of resting
   /// contacts is motion.force_time(): their impulses stand for forces during the whole motion.

@@ -46,16 +46,16 @@ class ShapeInterface {
   /// Returns the number of pieces whose convex hull is that of the solid; 0 if the shape has no support
   /// function.
   virtual int hull_pieces() const = 0;
-  /// Returns the point (m, body frame) of a piece of the hull that is farthest in the direction m, a unit
-  /// vector of the body frame. The farthest of all pieces is on the surface. piece: from 0.
+  /// Returns the point (m, body frame) of a piece of the hull that is farthest in the direction of m, a
+  /// vector of the body frame that is not zero. The farthest of all pieces is on the surface. piece: from 0.
   virtual Vec3<double> support(const Vec3<double>& m, ShapeParameters a, int piece) const = 0;
   /// Returns support() and its derivatives along the dual parts of m. Where they do not exist (at the axis of
   /// an end face, and for exponents below 1 at m_x = 0, m_y = 0 or m_z = 0) some of them are zero.
   virtual Vec3<Dual<3>> support(const Vec3<Dual<3>>& m, ShapeParameters a, int piece) const = 0;
   /// Whether contact may use the support function (shape/shape.h).
   virtual bool has_support(ShapeParameters a) const = 0;
-  /// Whether a single piece of the hull has nearly flat regions.
-  virtual bool has_faces(ShapeParameters a) const = 0;
+  /// Whether a piece of the hull has nearly flat regions, other than end faces.
+  virtual bool has_flat_regions(ShapeParameters a) const = 0;
   /// Whether pieces 0 and 1 of the hull are flat faces with the normals z and -z.
   virtual bool has_end_faces() const = 0;
   /// Whether the solid is its hull.
@@ -126,7 +126,7 @@ PLIANT_HAS_MEMBER(semi_axes)
 PLIANT_HAS_MEMBER(half_sizes)
 PLIANT_HAS_MEMBER(hull_pieces)
 PLIANT_HAS_MEMBER(has_support)
-PLIANT_HAS_MEMBER(has_faces)
+PLIANT_HAS_MEMBER(has_flat_regions)
 PLIANT_HAS_MEMBER(has_end_faces)
 PLIANT_HAS_MEMBER(is_convex)
 PLIANT_HAS_MEMBER(profile)
@@ -202,10 +202,12 @@ class ShapeInterfaceOf final : public ShapeInterface {
       return std::nullopt;
   }
   int hull_pieces() const override {
-    if constexpr (detail::has_hull_pieces<Shape>)
+    if constexpr (detail::has_hull_pieces<Shape>) {
+      static_assert(Shape::hull_pieces <= kMaxHullPieces);
       return Shape::hull_pieces;
-    else
+    } else {
       return 0;
+    }
   }
   Vec3<double> support(const Vec3<double>& m, ShapeParameters a, int piece) const override {
     if constexpr (detail::has_hull_pieces<Shape>)
@@ -232,9 +234,9 @@ class ShapeInterfaceOf final : public ShapeInterface {
     else
       return detail::has_hull_pieces<Shape>;
   }
-  bool has_faces(ShapeParameters a) const override {
-    if constexpr (detail::has_has_faces<Shape>)
-      return Shape::has_faces(vec(a));
+  bool has_flat_regions(ShapeParameters a) const override {
+    if constexpr (detail::has_has_flat_regions<Shape>)
+      return Shape::has_flat_regions(vec(a));
     else
       return true;
   }

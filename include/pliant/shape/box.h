@@ -43,7 +43,7 @@ struct Box {
     auto sign = [&](int k) { return (piece >> k & 1) != 0 ? -1.0 : 1.0; };
     return {a[0] * sign(0), a[1] * sign(1), a[2] * sign(2)};
   }
-  static bool has_faces(const Vec<double, 3>&) { return false; }
+  static bool has_flat_regions(const Vec<double, 3>&) { return false; }
   static Vec3<double> half_sizes(const Vec<double, 3>& a) { return a; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {

@@ -61,7 +61,7 @@ struct Capsule {
     const T scale = a[0] / math::sqrt(T(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
     return {m[0] * scale, m[1] * scale, m[2] * scale + a[1] * (piece == 0 ? 0.5 : -0.5)};
   }
-  static bool has_faces(const Vec<double, 2>&) { return false; }
+  static bool has_flat_regions(const Vec<double, 2>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 2>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 2>&) {
     return material_towards(g);

@@ -43,6 +43,7 @@ struct Cone {
   /// The hull is that of the two end faces, first the upper one; a tip is an end face of size zero.
   static constexpr int hull_pieces = 2;
   static constexpr bool has_end_faces = true;
+  static bool has_flat_regions(const Vec<double, 4>&) { return false; }
   template <class T>
   static Vec3<T> support(const Vec3<T>& m, const Vec<T, 4>& a, int piece) {
     const double end = piece == 0 ? 1.0 : -1.0;

@@ -42,6 +42,7 @@ struct Cylinder {
   /// The hull is that of the two end faces, which are ellipses: first the upper one.
   static constexpr int hull_pieces = 2;
   static constexpr bool has_end_faces = true;
+  static bool has_flat_regions(const Vec<double, 3>&) { return false; }
   template <class T>
   static Vec3<T> support(const Vec3<T>& m, const Vec<T, 3>& a, int piece) {
     const Vec<T, 2> rim = ellipse_support(m, a[0], a[1]);

@@ -38,7 +38,7 @@ struct Ellipsoid {
     const T h = math::sqrt(T(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]));
     return {a[0] * y[0] / h, a[1] * y[1] / h, a[2] * y[2] / h};
   }
-  static bool has_faces(const Vec<double, 3>&) { return false; }
+  static bool has_flat_regions(const Vec<double, 3>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
     return material_towards(g);

@@ -29,14 +29,16 @@
 //   half_sizes(a)     only for a box about the origin: its half sizes (metres)
 //   hull_pieces       number of pieces of the convex hull. Each piece is convex, and the hull of the solid is
 //                     the hull of all pieces
-//   support(m, a, piece)  point of a piece (metres, body frame) that is farthest in the direction m, |m| = 1.
-//                     The farthest one of all pieces is on the surface. Requires hull_pieces
+//   support(m, a, piece)  point of a piece (metres, body frame) that is farthest in the direction of m, a
+//   vector of
+//                     any length but zero; a template on the scalar of m and a. The farthest one of all
+//                     pieces is on the surface. Requires hull_pieces, at most kMaxHullPieces
 //   has_support(a)    whether contact may use the support function: no piece has flat faces or straight edges
 //                     other than end faces. Default: true
-//   has_faces(a)      whether a single piece has nearly flat regions. Default: true
+//   has_flat_regions(a)  whether a piece has nearly flat regions, other than end faces. Default: true
 //   has_end_faces     exists only if pieces 0 and 1 of the hull are flat faces with the normals z and -z; its
 //                     value is not read
-//   is_convex(a)      whether the solid is convex. Default: true if there is a support function
+//   is_convex(a)      whether the solid is convex if has_support(a). Default: true
 //   bounded_exponents exists only if a changing exponent strains the material by bounded amounts; its value
 //                     is not read
 //   linear_lengths    exists only if e is linear in the parameters that are lengths, for all values of the
@@ -63,6 +65,9 @@ struct Section {
 
 /// The pattern of the surface mesh of a shape.
 enum class MeshPattern { ball, torus };
+
+/// Most pieces of the convex hull of a shape.
+inline constexpr int kMaxHullPieces = 8;
 
 /// Number of parameters of a shape.
 template <class Shape>

@@ -31,7 +31,7 @@ struct Sphere {
     const T scale = a[0] / math::sqrt(T(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
     return {m[0] * scale, m[1] * scale, m[2] * scale};
   }
-  static bool has_faces(const Vec<double, 1>&) { return false; }
+  static bool has_flat_regions(const Vec<double, 1>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 1>& a) {
     return Ellipsoid::label(x, Vec3<double>::Constant(a[0]));
   }

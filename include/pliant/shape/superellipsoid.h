@@ -52,8 +52,7 @@ struct Superellipsoid {
             a[2] * profile.y * sign_factor(m[2])};
   }
   static bool has_support(const Vec<double, 5>& a) { return std::max(a[3], a[4]) <= kMaxRoundExponent; }
-  static bool is_convex(const Vec<double, 5>& a) { return a[3] <= 2 && a[4] <= 2; }
-  static bool has_faces(const Vec<double, 5>& a) { return std::min(a[3], a[4]) < kMinRoundExponent; }
+  static bool has_flat_regions(const Vec<double, 5>& a) { return std::min(a[3], a[4]) < kMinRoundExponent; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   static std::vector<Panel> profile(const Vec<double, 5>& a, bool dynamic_exponents);

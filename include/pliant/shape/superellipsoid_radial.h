@@ -46,8 +46,7 @@ struct SuperellipsoidRadial {
     return Superellipsoid::support(m, a, piece);
   }
   static bool has_support(const Vec<double, 5>& a) { return Superellipsoid::has_support(a); }
-  static bool is_convex(const Vec<double, 5>& a) { return Superellipsoid::is_convex(a); }
-  static bool has_faces(const Vec<double, 5>& a) { return Superellipsoid::has_faces(a); }
+  static bool has_flat_regions(const Vec<double, 5>& a) { return Superellipsoid::has_flat_regions(a); }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   /// The trigonometric map generates the quadrature points, because the sharp edges of the surface are

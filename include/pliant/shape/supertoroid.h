@@ -65,7 +65,7 @@ struct Supertoroid {
   static bool has_support(const Vec<double, 6>& a) {
     return std::min(a[4], a[5]) >= kMinRoundExponent && std::max(a[4], a[5]) <= kMaxRoundExponent;
   }
-  static bool has_faces(const Vec<double, 6>&) { return false; }
+  static bool has_flat_regions(const Vec<double, 6>&) { return false; }
   static bool is_convex(const Vec<double, 6>&) { return false; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 6>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 6>& a);
