@@ -172,12 +172,12 @@ std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector
 }  // namespace
 
 CollisionSurface::CollisionSurface(const Part& part)
-    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution), has_hull_(Hull::exists(part)) {
+    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution) {
   if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest())) {
     thickness_ = 2 * axes->minCoeff();
-  } else if (has_hull_) {
-    const ParameterValues<double> values = part.parameters().rest();
-    thickness_ = Hull(part, values).extents().minCoeff();
+  } else if (const ParameterValues<double> values = part.parameters().rest();
+             Hull::is_affine(part) && Hull::exists(part, values)) {
+    thickness_ = Hull(part, values, true).extents().minCoeff();
   } else {
     thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
   }

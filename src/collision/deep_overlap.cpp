@@ -28,7 +28,8 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
   const Placed& placed = scratch_->parts[at(i)];
   const Vec3<double> n = placed.R.transpose() * direction;
   if (placed.axes) return placed.axes->cwiseProduct(lowest_direction(*placed.axes, -n));
-  if (uses_hull(i)) return Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)]).support(n);
+  if (uses_hull(i))
+    return Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)], is_convex(i)).support(n);
   const Eigen::Matrix3Xd& p = points_of(i);
   Eigen::Index best = 0;
   (n.transpose() * p).maxCoeff(&best);

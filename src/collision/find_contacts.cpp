@@ -101,8 +101,9 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
     std::vector<CollisionSurface::LowPoint>& points = scratch_->low_points;
     points.clear();
     const Vec3<double> along = placed.R.transpose() * normal.unitOrthogonal();
-    touch_plane(*model_->parts()[at(a)].part, values, surface.thickness(), {n, offset, along}, max_gap,
-                scratch_->hull_points, points);
+    // For dynamic parameters the test of convexity takes longer than the search from several starts.
+    const Hull hull(*model_->parts()[at(a)].part, values, has_fixed_shape(a) && is_convex(a));
+    touch_plane(hull, surface.thickness(), {n, offset, along}, max_gap, scratch_->hull_points, points);
     for (const CollisionSurface::LowPoint& low : points) add(low);
     return;
   }
@@ -116,8 +117,14 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
 
 /// Whether the contacts of a part follow from its support function at the present parameters.
 bool ContactFinder::uses_hull(int i) const {
-  return surfaces_[at(i)]->has_hull() &&
-         model_->parts()[at(i)].part->shape().has_support(scratch_->values[at(i)].b.data());
+  return Hull::exists(*model_->parts()[at(i)].part, scratch_->values[at(i)]);
+}
+
+/// Whether a part that uses its hull is convex at the present parameters.
+bool ContactFinder::is_convex(int i) const {
+  std::optional<bool>& convex = scratch_->parts[at(i)].convex;
+  if (!convex) convex = Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)], false).test_convexity();
+  return *convex;
 }
 
 std::optional<Contact> ContactFinder::follow(const Contact& contact) const {

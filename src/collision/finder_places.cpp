@@ -19,7 +19,10 @@ void ContactFinder::place(const State& state, double t, int i) const {
     for (int k = 0; k < m.n_s; ++k) {
       const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
       const double value = state.q[m.q0 + 7 + k];
-      if (values.b[parameter] != value) placed.points_current = false;
+      if (values.b[parameter] != value) {
+        placed.points_current = false;
+        placed.convex.reset();
+      }
       values.b[parameter] = value;
       values.b_dot[parameter] = state.v[m.v0 + 6 + k];
     }

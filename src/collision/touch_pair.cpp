@@ -40,7 +40,7 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
   if (const int end_face = part.hull.parallel_end_face(m, same); end_face >= 0) {
     part.hull.add_rim(m, axis, end_face, same, kMaxRimPoints, points);
   } else {
-    part.hull.touching_points(m, axis, end_face, same, kMaxRimPoints, points);
+    part.hull.touching_points(m, axis, end_face, {same}, kMaxRimPoints, points);
     double farthest = m.dot(points[0]);
     for (const Vec3<double>& p : points) farthest = std::max(farthest, m.dot(p));
     points.erase(

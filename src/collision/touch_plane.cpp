@@ -7,18 +7,17 @@ namespace {
 constexpr int kRimPoints = 4;
 }  // namespace
 
-void touch_plane(const Part& part, const ParameterValues<double>& values, double thickness,
-                 const PlaneInBody& plane, double max_gap, std::vector<Vec3<double>>& points,
-                 std::vector<CollisionSurface::LowPoint>& found) {
-  const Hull hull(part, values);
+void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, double max_gap,
+                 std::vector<Vec3<double>>& points, std::vector<CollisionSurface::LowPoint>& found) {
   points.clear();
   const Vec3<double> down = -plane.normal;
   const double one_point = one_point_distance(thickness);
-  hull.touching_points(down, plane.along, hull.parallel_end_face(down, one_point), one_point, kRimPoints,
+  const Hull::Needed needed{one_point, plane.offset - max_gap - one_point};
+  hull.touching_points(down, plane.along, hull.parallel_end_face(down, one_point), needed, kRimPoints,
                        points);
   for (const Vec3<double>& p : points)
     if (const double height = plane.normal.dot(p) + plane.offset; height <= max_gap)
-      found.push_back({part.label(p, values), p, height});
+      found.push_back({hull.label(p), p, height});
 }
 
 }  // namespace pliant

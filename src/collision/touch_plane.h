@@ -19,8 +19,7 @@ struct PlaneInBody {
 
 /// Appends the points of a part that touch a plane (Hull::touching_points) and are at most max_gap (m) above
 /// it. thickness: least extent of the part, m. points: scratch storage.
-void touch_plane(const Part& part, const ParameterValues<double>& values, double thickness,
-                 const PlaneInBody& plane, double max_gap, std::vector<Vec3<double>>& points,
-                 std::vector<CollisionSurface::LowPoint>& found);
+void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, double max_gap,
+                 std::vector<Vec3<double>>& points, std::vector<CollisionSurface::LowPoint>& found);
 
 }  // namespace pliant

@@ -54,8 +54,6 @@ class CollisionSurface {
   /// Returns the radius of a ball that is centred at the origin of the frame and contains the part, m. If the
   /// part has dynamic parameters and is no ellipsoid, the radius is estimated from few points.
   double reach(const ParameterValues<double>& values) const;
-  /// Whether the convex hull of the part is known (src/collision/hull.h).
-  bool has_hull() const { return has_hull_; }
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
 
@@ -92,7 +90,6 @@ class CollisionSurface {
   /// torus the angle between neighbours around the tube.
   double spacing_;
   double thickness_;
-  bool has_hull_;
 };
 
 }  // namespace pliant

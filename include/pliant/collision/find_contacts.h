@@ -88,6 +88,7 @@ class ContactFinder {
   void place(const State& state, double t, int part) const;
   bool has_fixed_shape(int part) const;
   bool uses_hull(int part) const;
+  bool is_convex(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
   /// after: the end of a step that is done; nullptr for a coming step.
   Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;

@@ -83,23 +83,35 @@ PLIANT_INLINE Eigen::Matrix3Xd PartEvaluation::s_along(const std::vector<Materia
   return out;
 }
 
+PLIANT_INLINE void PartEvaluation::apply_chain(const Eigen::Matrix<double, 3, 4>& e,
+                                               const ParameterValues<double>& values,
+                                               ChainImages& images) const {
+  static_assert(Pack::kLanes == 4);
+  Jet<Pack> jet;
+  for (int r = 0; r < 3; ++r) {
+    for (int i = 0; i < 4; ++i) jet.s[r].set(i, e(r, i));
+    for (std::size_t c = 0; c < 3; ++c) jet.J[c][r] = Pack(static_cast<std::size_t>(r) == c ? 1.0 : 0.0);
+  }
+  JetBatch<Pack> batch{&jet, 1, 3, Level::jacobian};
+  deform(values, batch);
+  for (int i = 0; i < 4; ++i)
+    for (int r = 0; r < 3; ++r) {
+      images.x(r, i) = jet.s[r][i];
+      for (int c = 0; c < 3; ++c)
+        images.F[static_cast<std::size_t>(i)](r, c) = jet.J[static_cast<std::size_t>(c)][r][i];
+    }
+}
+
 PLIANT_INLINE std::vector<Mat3<double>> PartEvaluation::chain_gradient(
     const Eigen::Matrix3Xd& e, const ParameterValues<double>& values) const {
   std::vector<Mat3<double>> F(static_cast<std::size_t>(e.cols()));
-  Jet<Pack> jet;
-  for (Eigen::Index first = 0; first < e.cols(); first += Pack::kLanes) {
-    for (int r = 0; r < 3; ++r) {
-      for (int i = 0; i < Pack::kLanes; ++i)
-        jet.s[r].set(i, e(r, std::min<Eigen::Index>(first + i, e.cols() - 1)));
-      for (std::size_t c = 0; c < 3; ++c) jet.J[c][r] = Pack(static_cast<std::size_t>(r) == c ? 1.0 : 0.0);
-    }
-    JetBatch<Pack> batch{&jet, 1, 3, Level::jacobian};
-    deform(values, batch);
-    for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + Pack::kLanes, e.cols()); ++i)
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-          F[static_cast<std::size_t>(i)](r, c) =
-              jet.J[static_cast<std::size_t>(c)][r][static_cast<int>(i - first)];
+  Eigen::Matrix<double, 3, 4> four;
+  ChainImages images;
+  for (Eigen::Index first = 0; first < e.cols(); first += 4) {
+    for (int i = 0; i < 4; ++i) four.col(i) = e.col(std::min(first + i, e.cols() - 1));
+    apply_chain(four, values, images);
+    for (Eigen::Index i = first; i < std::min(first + 4, e.cols()); ++i)
+      F[static_cast<std::size_t>(i)] = images.F[static_cast<std::size_t>(i - first)];
   }
   return F;
 }

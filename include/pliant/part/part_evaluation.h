@@ -4,6 +4,7 @@
 // part_evaluation-inl.h (geometry) and inertia-inl.h (M and g_q).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,14 @@ class PartEvaluation : public PartDescription {
   /// 3 x n.
   Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
                            const ParameterValues<Dual<1>>& values) const;
+  /// Images of four undeformed positions under the chain of deformations T.
+  struct ChainImages {
+    Eigen::Matrix<double, 3, 4> x;  ///< T(e), one column for each position, m
+    std::array<Mat3<double>, 4> F;  ///< dT/de at each position
+  };
+  /// Computes the images of four undeformed positions e (columns, m).
+  void apply_chain(const Eigen::Matrix<double, 3, 4>& e, const ParameterValues<double>& values,
+                   ChainImages& images) const;
   /// Returns the derivative dT/de of the chain of deformations T at n undeformed positions e (3 x n, m): one
   /// 3 x 3 matrix for each position.
   std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pliant/deform/all_deforms.h>
+#include <pliant/deform/chain.h>
 #include <pliant/part/shape_interface.h>
 #include <pliant/part/shape_jets.h>
 #include <pliant/shape/all_shapes.h>
