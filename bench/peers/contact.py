@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The cost of contact in other engines, one thread: problems of bench/contact_bench.cpp and balloon_bench.cpp.
 
-usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--most 1000] [--rounds 3]
+usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--problems rigid,balloons] [--most 1000]
+                  [--rounds 3]
 """
 import argparse
 import csv
@@ -28,7 +29,7 @@ COLUMNS = ("engine,problem,count_or_triangles,step_s,us_per_body_and_step,real_t
            "string_error_m").split(",")
 GRAVITY = [0, 0, -contact_problems.GRAVITY]
 # The problems of contact_bench, with their numbers of layers.
-HEAPS = {"rigid": 1, "rigid, heap": 5}
+HEAPS = {"ellipsoid, plane": 1, "ellipsoid, heap": 5}
 STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps between samples of the contacts
 # The problems of balloon_bench. beta: stiffness-proportional damping, s; drag: damping of all motion, 1/s.
 POISSON, RADIUS, MAX_STEP, MIN_STEP = 0.45, 0.1, 2**-10, 2**-20  # the steps tried are between these limits, s
@@ -178,7 +179,7 @@ def fastest(run, *args, rounds):
 ENGINES = "mujoco bullet rapier drake".split()
 
 
-def rows(engines, max_bodies, rounds):
+def rigid_rows(engines, max_bodies, rounds):
     for engine in engines:
         for problem, layers in HEAPS.items():
             for count in (n for n in (10, 100, 1000) if n <= max_bodies):
@@ -189,8 +190,9 @@ def rows(engines, max_bodies, rounds):
                     continue
                 yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",
                        f"{DURATION / seconds:.4g}", f"{max_depth:.3e}", ""]
-    if "mujoco" not in engines:
-        return
+
+
+def balloon_rows(rounds):
     for problem, (balloon, count, duration, sizes) in BALLOONS.items():
         for triangles in sizes:
             for integrator in ("euler", "discrete", "ipc"):
@@ -204,11 +206,19 @@ def rows(engines, max_bodies, rounds):
                            f"{max_depth:.3e}", f"{stretch:.3e}" if count > 1 else ""]
 
 
+def rows(options, engines):
+    if "rigid" in options.problems:
+        yield from rigid_rows(engines, options.most, options.rounds)
+    if "balloons" in options.problems and "mujoco" in engines:
+        yield from balloon_rows(options.rounds)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, help="default: FOLDER/contact_peers.csv")
     parser.add_argument("--engines", type=lambda s: s.split(","), default=ENGINES)
+    parser.add_argument("--problems", type=lambda s: s.split(","), default=["rigid", "balloons"])
     parser.add_argument("--most", type=int, default=1000, help="largest number of bodies")
     parser.add_argument("--rounds", type=int, default=3, help="runs per configuration; the minimum time is written")
     options = parser.parse_args()
@@ -226,7 +236,7 @@ def main():
         file.write("# " + ", ".join(f"{engine} {version}" for engine, version in versions.items()) + "\n")
         table = csv.writer(file, lineterminator="\n")
         table.writerow(COLUMNS)
-        for row in rows(versions, options.most, options.rounds):
+        for row in rows(options, versions):
             table.writerow(row)
             file.flush()
             print(*row, flush=True)
