@@ -87,6 +87,6 @@ def judge(problem, times, samples, reference):
     errors = (np.full(2, np.nan) if reference is None
               else np.linalg.norm(samples[-1, :, :3] - reference, axis=1))
     depth = surface_depth(problem, samples)
-    if problem.touch and len(problem.bodies) > 1:
-        depth = max(depth, pair_depth(problem, samples)) if problem.chaotic else depth
+    if problem.meet:
+        depth = max(depth, pair_depth(problem, samples))
     return float(np.median(errors)), float(errors.max()), depth, energy_error(problem, times, samples)

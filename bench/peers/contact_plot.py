@@ -30,7 +30,7 @@ def read(path):
     for row in rows:
         points = curves.setdefault(row["problem"], {}).setdefault((row["engine"], row["method"]), [])
         if row["failed"] == "0":
-            points.append(tuple(float(row[name]) for name in ("cpu_s", "median_error_m", "depth_m")))
+            points.append(tuple(float(row[name] or math.nan) for name in ("cpu_s", "median_error_m", "depth_m")))
     return curves
 
 

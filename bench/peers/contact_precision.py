@@ -97,8 +97,8 @@ class Pliant:
 
 
 def reference(problem, pliant, table):
-    """Returns the centres at the end, or None for a chaotic problem. Writes the differences of the methods to the table."""
-    if problem.chaotic:
+    """Returns the centres at the end, or None if bodies meet. Writes the differences of the methods to the table."""
+    if problem.meet:
         return None
     if problem.name == "block":
         return contact_problems.sliding_block(problem.end)[0][None]
@@ -116,30 +116,32 @@ def reference(problem, pliant, table):
     return places
 
 
+def interleaved(problem, engines):
+    """Returns all runs (engine, method, setting) of a round: the first setting of each engine, then the second, ..."""
+    lists = [[(name, *setting) for setting in engine.settings(problem)] for name, engine in engines.items()]
+    return [runs[i] for i in range(max(map(len, lists))) for runs in lists if i < len(runs)]
+
+
 def measure(problem, engines, places, rounds, limit):
-    """Returns {(engine, method, setting): [min CPU s, results of judge(), or a text for a failed run]}."""
-    results, too_long = {}, set()
+    """Returns {(engine, method, setting): [least CPU s, results of judge(), or a text for a failed run]}."""
     times = np.arange(round(problem.end / pliant_contact.INTERVAL) + 1) * pliant_contact.INTERVAL
-    lists = {name: engine.settings(problem) for name, engine in engines.items()}
-    for turn in range(rounds):
-        for index in range(max(map(len, lists.values()))):
-            for name, engine in engines.items():
-                if index >= len(lists[name]):
-                    continue
-                method, setting = key = lists[name][index]
-                if (name, method) in too_long and (name, *key) not in results:
-                    continue
-                if turn and isinstance(results[(name, *key)][1], str):
-                    continue
-                try:
-                    seconds, samples = engine.run(problem, method, setting)
-                    if not turn:
-                        results[(name, *key)] = [seconds, judge(problem, times, samples, places)]
-                    results[(name, *key)][0] = min(seconds, results[(name, *key)][0])
-                    if seconds > limit:
-                        too_long.add((name, method))
-                except Exception as fault:  # any exception of an engine is a failed run
-                    results[(name, *key)] = [np.nan, str(fault).split("\n")[0]]
+    results, too_long, plan = {}, set(), interleaved(problem, engines)
+    for run in plan:
+        name, method, setting = run
+        if (name, method) in too_long:
+            continue
+        try:
+            seconds, samples = engines[name].run(problem, method, setting)
+            results[run] = [seconds, judge(problem, times, samples, places)]
+            if seconds > limit:
+                too_long.add((name, method))
+        except Exception as fault:  # any exception of an engine is a failed run
+            results[run] = [np.nan, str(fault).split("\n")[0]]
+    for _ in range(rounds - 1):
+        for run in plan:
+            if run in results and not isinstance(results[run][1], str):
+                name, method, setting = run
+                results[run][0] = min(results[run][0], engines[name].run(problem, method, setting)[0])
     return results
 
 
@@ -184,7 +186,7 @@ def main():
             results = measure(problem, engines, places, options.rounds, options.limit)
             for (engine, method, setting), (seconds, found) in results.items():
                 failed = isinstance(found, str)
-                numbers = [""] * 5 if failed else [f"{seconds:.5f}", *(f"{x:.3e}" for x in found)]
+                numbers = [""] * 5 if failed else [f"{seconds:.5f}", *(f"{x:.3e}" if np.isfinite(x) else "" for x in found)]
                 table.writerow([name, engine, method, f"{setting:.6g}", *numbers, int(failed)])
                 print(name, engine, method, f"{setting:.6g}", *numbers, found if failed else "", flush=True)
 

@@ -32,8 +32,8 @@ class Problem:
     bodies: list
     end: float
     bowl: object = None  # a Bowl, or None for the plane z = 0
-    touch: bool = True  # whether bodies touch each other
-    chaotic: bool = False  # whether positions cannot be compared
+    touch: bool = True  # whether contacts between bodies are active
+    meet: bool = False  # whether bodies meet; the motion is then chaotic, and positions are not compared
     finest: int = 7  # steps are 0.02 s / 2^k, k = 0 ... finest
 
 
@@ -172,7 +172,7 @@ def make(name):
     if name == "slide":
         return Problem(name, list(sliding(30)), 0.6)
     if name == "heap":
-        return Problem(name, list(ellipsoids(100, 5)), 1, chaotic=True, finest=5)
+        return Problem(name, list(ellipsoids(100, 5)), 1, meet=True, finest=5)
     bowl = Bowl()
     return Problem(name, list(in_bowl(16, bowl)), 0.6, bowl=bowl, touch=False)
 
