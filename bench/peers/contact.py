@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """The cost of contact in other engines, one thread: problems of bench/contact_bench.cpp and balloon_bench.cpp.
 
-usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--most 1000] [--rounds 3]
+usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--problems rigid,balloons] [--most 1000]
+                  [--rounds 3]
 """
 import argparse
 import csv
+import importlib
 import importlib.metadata
-import logging
 import math
 import multiprocessing
 import os
@@ -17,14 +18,18 @@ from types import SimpleNamespace
 
 import numpy as np
 
+import contact_problems
+from contact_judge import pair_depth, surface_depth
+from contact_precision import version
+from contact_problems import DENSITY, Problem, ellipsoids
 from meshes import deepest_inside, sphere
 from run import in_child
 
 COLUMNS = ("engine,problem,count_or_triangles,step_s,us_per_body_and_step,real_time_factor,deepest_m,"
            "string_error_m").split(",")
-DENSITY, FRICTION, GRAVITY = 1000, 0.5, [0, 0, -9.81]
+GRAVITY = [0, 0, -contact_problems.GRAVITY]
 # The problems of contact_bench, with their numbers of layers.
-HEAPS = {"rigid": 1, "rigid, heap": 5}
+HEAPS = {"ellipsoid, plane": 1, "ellipsoid, heap": 5}
 STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps between samples of the contacts
 # The problems of balloon_bench. beta: stiffness-proportional damping, s; drag: damping of all motion, 1/s.
 POISSON, RADIUS, MAX_STEP, MIN_STEP = 0.45, 0.1, 2**-10, 2**-20  # the steps tried are between these limits, s
@@ -36,122 +41,24 @@ BALLOONS = {"drop": (FIRM, 1, 0.5, [320, 1280, 5120]), "nine on strings": (THIN,
 MAX_SECONDS = 60  # a configuration is not repeated if its runs so far took more CPU time than this, s
 
 
-def ellipsoids(count, layers):
-    """Yields (semi-axes in m, mass in kg, centre in m, quaternion w x y z) of ellipsoids, side by side or in layers."""
-    across = math.ceil(math.sqrt(count / layers))
-    for i in range(count):
-        a, b, c = ((i + 1) * ratio % 1 for ratio in (0.6180339887498949, 0.7548776662466927, 0.5698402909980532))
-        layer, place = divmod(i, across * across)
-        axis = np.array([a - 0.5, b - 0.5, c - 0.4])
-        size = 0.06 + 0.04 * np.array([a, b, c])
-        yield (size, DENSITY * 4 / 3 * math.pi * size.prod(),
-               [0.25 * (place % across) + 0.02 * a, 0.25 * (place // across) + 0.02 * b, 0.15 + 0.1 * c + 0.35 * layer],
-               [math.cos(3 * a), *math.sin(3 * a) * axis / np.linalg.norm(axis)])
-
-
-def mujoco_contact(step):
-    """Returns the contact parameters that are the stiffest stable ones by the documentation.
-
-    They are also the fastest here. The default time constant is 0.02 s.
-    """
-    return {"solref": [2 * step, 1], "friction": [FRICTION, 0.005, 0.0001]}
-
-
 def mujoco_depth(data):
     return max(0, -data.contact.dist.min()) if data.ncon else 0
 
 
-def mujoco_ellipsoids(bodies):
-    import mujoco
-    spec = mujoco.MjSpec()
-    spec.option.timestep, spec.option.gravity = STEP, GRAVITY
-    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **mujoco_contact(STEP))
-    for size, mass, centre, quaternion in bodies:
-        body = spec.worldbody.add_body(pos=centre, quat=quaternion)
-        body.add_freejoint()
-        body.add_geom(type=mujoco.mjtGeom.mjGEOM_ELLIPSOID, size=size, mass=mass, **mujoco_contact(STEP))
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    return (lambda count: mujoco.mj_step(model, data, nstep=count), lambda: mujoco_depth(data),
-            lambda: data.xpos[1:, 2])
-
-
-def bullet_ellipsoids(bodies):
-    """Bullet has no ellipsoids: convex hulls of 100 points, distributed evenly on a spiral, replace them."""
-    import pybullet
-    pybullet.connect(pybullet.DIRECT)
-    pybullet.setGravity(*GRAVITY)
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP)
-    plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
-    pybullet.changeDynamics(plane, -1, lateralFriction=1)  # Bullet multiplies the coefficients of two bodies
-    z = 1 - (2 * np.arange(100) + 1) / 100
-    turn = math.pi * (1 + math.sqrt(5)) * (np.arange(100) + 0.5)
-    across = np.sqrt(1 - z * z)
-    points = np.stack([across * np.cos(turn), across * np.sin(turn), z], axis=1)
-    made = []
-    for size, mass, centre, (w, *xyz) in bodies:
-        hull = pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=(points * size).tolist())
-        made.append(pybullet.createMultiBody(mass, hull, basePosition=centre, baseOrientation=[*xyz, w]))
-        pybullet.changeDynamics(made[-1], -1, lateralFriction=FRICTION, linearDamping=0,
-                                angularDamping=0, localInertiaDiagonal=mass / 5 * (size @ size - size * size))
-
-    def advance(count):
-        for _ in range(count):
-            pybullet.stepSimulation()
-
-    return (advance, lambda: max([0, *(-point[8] for point in pybullet.getContactPoints())]),
-            lambda: [pybullet.getBasePositionAndOrientation(body)[0][2] for body in made])
-
-
-def drake_ellipsoids(bodies):
-    """Drake with point contact and the solver SAP."""
-    from pydrake.common.eigen_geometry import Quaternion
-    from pydrake.geometry import Ellipsoid, HalfSpace
-    from pydrake.math import RigidTransform
-    from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
-    from pydrake.multibody.tree import SpatialInertia
-    from pydrake.systems.analysis import Simulator
-    from pydrake.systems.framework import DiagramBuilder
-    logging.getLogger("drake").setLevel(logging.ERROR)  # no warnings that half spaces do not touch soft bodies
-    friction = CoulombFriction(FRICTION, FRICTION)
-    builder = DiagramBuilder()
-    plant, _ = AddMultibodyPlant(MultibodyPlantConfig(
-        time_step=STEP, contact_model="point", discrete_contact_approximation="sap"), builder)
-    plant.mutable_gravity_field().set_gravity_vector(GRAVITY)
-    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "floor", friction)
-    made = []
-    for i, (size, mass, centre, quaternion) in enumerate(bodies):
-        body = plant.AddRigidBody(f"body{i}", SpatialInertia.SolidEllipsoidWithMass(mass, *size))
-        plant.RegisterCollisionGeometry(body, RigidTransform(), Ellipsoid(*size), f"body{i}", friction)
-        made.append((body, RigidTransform(Quaternion(quaternion), centre)))
-    plant.Finalize()
-    simulator = Simulator(builder.Build())
-    context = plant.GetMyContextFromRoot(simulator.get_context())
-    for body, pose in made:
-        plant.SetFreeBodyPose(plant.GetMyMutableContextFromRoot(simulator.get_mutable_context()), body, pose)
-    simulator.Initialize()
-
-    def deepest():
-        found = plant.get_contact_results_output_port().Eval(context)
-        return max([0, *(found.point_pair_contact_info(i).point_pair().depth
-                         for i in range(found.num_point_pair_contacts()))])
-
-    return (lambda count: simulator.AdvanceTo(simulator.get_context().get_time() + count * STEP), deepest,
-            lambda: [plant.EvalBodyPoseInWorld(context, body).translation()[2] for body, _ in made])
-
-
-def rigid_run(make, count, layers):
+def rigid_run(engine, count, layers):
     """Returns (CPU s, largest depth in m). Raises RuntimeError if the ellipsoids are not on the plane at the end."""
-    advance, deepest, heights = make(ellipsoids(count, layers))
-    seconds, max_depth = 0, 0
+    problem = Problem("rigid", list(ellipsoids(count, layers)), DURATION)
+    advance, sample = importlib.import_module(f"{engine}_contact").make(problem, STEP)
+    seconds, samples = 0, []
     for _ in range(round(DURATION / STEP / SAMPLED)):
         start = time.process_time()
         advance(SAMPLED)
         seconds += time.process_time() - start
-        max_depth = max(max_depth, deepest())
-    if not (min(heights()) > 0.05 and max(heights()) < 0.06 + 0.2 * layers):
+        samples.append(sample())
+    heights = samples[-1][:, 2]
+    if not (heights.min() > 0.05 and heights.max() < 0.06 + 0.2 * layers):
         raise RuntimeError("at the end the ellipsoids are not on the plane")
-    return seconds, max_depth
+    return seconds, max(surface_depth(problem, np.array(samples)), pair_depth(problem, samples))
 
 
 def balloons(balloon, count, triangles, step, integrator):
@@ -161,6 +68,7 @@ def balloons(balloon, count, triangles, step, integrator):
     is a flex with membrane stiffness only.
     """
     import mujoco
+    from mujoco_contact import contact
     points, faces = sphere(triangles)
     text = lambda numbers: " ".join(map(str, np.ravel(numbers)))
     mass = DENSITY * balloon.thickness * 4 * math.pi * RADIUS**2
@@ -188,9 +96,9 @@ def balloons(balloon, count, triangles, step, integrator):
     if integrator == "ipc":
         option.enableflags |= mujoco.mjtEnableBit.mjENBL_IPC
     for flex in spec.flexes:
-        flex.solref, flex.friction = mujoco_contact(step).values()
+        flex.solref, flex.friction = contact(step).values()
     if count == 1:
-        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **mujoco_contact(step))
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **contact(step))
     else:
         for i, hook in enumerate(hooks):
             spec.worldbody.add_site(name=f"hook{i}", pos=hook)
@@ -268,23 +176,23 @@ def fastest(run, *args, rounds):
     return best
 
 
-RIGID = {"mujoco": mujoco_ellipsoids, "bullet": bullet_ellipsoids, "drake": drake_ellipsoids}
-DISTRIBUTIONS = {"mujoco": "mujoco", "bullet": "pybullet", "drake": "drake"}
+ENGINES = "mujoco bullet rapier drake".split()
 
 
-def rows(engines, max_bodies, rounds):
+def rigid_rows(engines, max_bodies, rounds):
     for engine in engines:
         for problem, layers in HEAPS.items():
             for count in (n for n in (10, 100, 1000) if n <= max_bodies):
                 try:
-                    seconds, max_depth = fastest(rigid_run, RIGID[engine], count, layers, rounds=rounds)
+                    seconds, max_depth = fastest(rigid_run, engine, count, layers, rounds=rounds)
                 except Exception as fault:  # any exception of an engine
                     print(f"{engine}, {problem}, {count}: FAILED, {fault}", flush=True)
                     continue
                 yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",
                        f"{DURATION / seconds:.4g}", f"{max_depth:.3e}", ""]
-    if "mujoco" not in engines:
-        return
+
+
+def balloon_rows(rounds):
     for problem, (balloon, count, duration, sizes) in BALLOONS.items():
         for triangles in sizes:
             for integrator in ("euler", "discrete", "ipc"):
@@ -298,11 +206,19 @@ def rows(engines, max_bodies, rounds):
                            f"{max_depth:.3e}", f"{stretch:.3e}" if count > 1 else ""]
 
 
+def rows(options, engines):
+    if "rigid" in options.problems:
+        yield from rigid_rows(engines, options.most, options.rounds)
+    if "balloons" in options.problems and "mujoco" in engines:
+        yield from balloon_rows(options.rounds)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, help="default: FOLDER/contact_peers.csv")
-    parser.add_argument("--engines", type=lambda s: s.split(","), default=list(RIGID))
+    parser.add_argument("--engines", type=lambda s: s.split(","), default=ENGINES)
+    parser.add_argument("--problems", type=lambda s: s.split(","), default=["rigid", "balloons"])
     parser.add_argument("--most", type=int, default=1000, help="largest number of bodies")
     parser.add_argument("--rounds", type=int, default=3, help="runs per configuration; the minimum time is written")
     options = parser.parse_args()
@@ -313,14 +229,14 @@ def main():
     versions = {}
     for engine in options.engines:
         try:
-            versions[engine] = importlib.metadata.version(DISTRIBUTIONS[engine])
-        except importlib.metadata.PackageNotFoundError as fault:
+            versions[engine] = in_child(version, engine)
+        except (ImportError, importlib.metadata.PackageNotFoundError) as fault:
             print(f"{engine}: SKIPPED, {fault}", flush=True)
     with open(options.out or options.folder / "contact_peers.csv", "w", newline="") as file:
         file.write("# " + ", ".join(f"{engine} {version}" for engine, version in versions.items()) + "\n")
         table = csv.writer(file, lineterminator="\n")
         table.writerow(COLUMNS)
-        for row in rows(versions, options.most, options.rounds):
+        for row in rows(options, versions):
             table.writerow(row)
             file.flush()
             print(*row, flush=True)

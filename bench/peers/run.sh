@@ -1,14 +1,19 @@
 #!/bin/bash
 # Installs the peers in FOLDER and runs the problems in them:  bench/peers/run.sh FOLDER [options of run.py]
-# Runs the contact problems instead:  bench/peers/run.sh FOLDER --contact [options of contact.py]
+# Runs contact problems instead:      bench/peers/run.sh FOLDER --contact [options of contact.py]
+#   or contact_precision.py, or contact_pairs.py:  --contact-precision, --contact-pairs
 # Requires a C++ compiler, CMake and libeigen3-dev for the compiled peers, and libsimbody-dev for Simbody.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-[ $# -ge 1 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
 folder=$1
 shift
 script=run.py
-[ "${1:-}" != --contact ] || { script=contact.py; shift; }
+case "${1:-}" in
+  --contact) script=contact.py; shift ;;
+  --contact-precision) script=contact_precision.py; shift ;;
+  --contact-pairs) script=contact_pairs.py; shift ;;
+esac
 mkdir -p "$folder"
 python="$folder/venv/bin/python"
 [ -x "$python" ] || python3 -m venv "$folder/venv"
