@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "hull.h"
+#include "hull/hull.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -177,7 +177,7 @@ CollisionSurface::CollisionSurface(const Part& part)
     thickness_ = 2 * axes->minCoeff();
   } else if (const ParameterValues<double> values = part.parameters().rest();
              Hull::is_affine(part) && Hull::exists(part, values)) {
-    thickness_ = Hull(part, values, true).extents().minCoeff();
+    thickness_ = Hull(part, values, Hull::Convexity::convex).extents().minCoeff();
   } else {
     thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
   }

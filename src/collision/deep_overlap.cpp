@@ -9,7 +9,7 @@
 #include <pliant/math/index.h>
 
 #include "finder_scratch.h"
-#include "hull.h"
+#include "hull/hull.h"
 
 namespace pliant {
 
@@ -29,7 +29,7 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
   const Vec3<double> n = placed.R.transpose() * direction;
   if (placed.axes) return placed.axes->cwiseProduct(lowest_direction(*placed.axes, -n));
   if (uses_hull(i))
-    return Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)], is_convex(i)).support(n);
+    return Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)], Hull::Convexity::convex).support(n);
   const Eigen::Matrix3Xd& p = points_of(i);
   Eigen::Index best = 0;
   (n.transpose() * p).maxCoeff(&best);

@@ -12,8 +12,8 @@
 #include <pliant/math/index.h>
 
 #include "finder_scratch.h"
+#include "hull/touch_plane.h"
 #include "outline.h"
-#include "touch_plane.h"
 
 namespace pliant {
 
@@ -102,7 +102,9 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
     points.clear();
     const Vec3<double> along = placed.R.transpose() * normal.unitOrthogonal();
     // For dynamic parameters the test of convexity takes longer than the search from several starts.
-    const Hull hull(*model_->parts()[at(a)].part, values, has_fixed_shape(a) && is_convex(a));
+    const bool convex = has_fixed_shape(a) && is_convex(a);
+    const Hull hull(*model_->parts()[at(a)].part, values,
+                    convex ? Hull::Convexity::convex : Hull::Convexity::unknown);
     touch_plane(hull, surface.thickness(), {n, offset, along}, max_gap, scratch_->hull_points, points);
     for (const CollisionSurface::LowPoint& low : points) add(low);
     return;
@@ -117,13 +119,15 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
 
 /// Whether the contacts of a part follow from its support function at the present parameters.
 bool ContactFinder::uses_hull(int i) const {
-  return Hull::exists(*model_->parts()[at(i)].part, scratch_->values[at(i)]);
+  std::optional<bool>& hull = scratch_->parts[at(i)].hull;
+  if (!hull) hull = Hull::exists(*model_->parts()[at(i)].part, scratch_->values[at(i)]);
+  return *hull;
 }
 
 /// Whether a part that uses its hull is convex at the present parameters.
 bool ContactFinder::is_convex(int i) const {
   std::optional<bool>& convex = scratch_->parts[at(i)].convex;
-  if (!convex) convex = Hull(*model_->parts()[at(i)].part, scratch_->values[at(i)], false).test_convexity();
+  if (!convex) convex = Hull::is_convex(*model_->parts()[at(i)].part, scratch_->values[at(i)]);
   return *convex;
 }
 

@@ -207,8 +207,8 @@ bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, do
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
   if (!uses_hull(a) || !uses_hull(b) || (one.axes && other.axes)) return false;
   if (!is_convex(a) || !is_convex(b)) return false;
-  const Hull hull_a(*model_->parts()[at(a)].part, scratch_->values[at(a)], true),
-      hull_b(*model_->parts()[at(b)].part, scratch_->values[at(b)], true);
+  const Hull hull_a(*model_->parts()[at(a)].part, scratch_->values[at(a)], Hull::Convexity::convex),
+      hull_b(*model_->parts()[at(b)].part, scratch_->values[at(b)], Hull::Convexity::convex);
   const PlacedHull placed_a{hull_a, one.c, one.R, surfaces_[at(a)]->thickness()},
       placed_b{hull_b, other.c, other.R, surfaces_[at(b)]->thickness()};
   const Separation apart = separation(placed_a, placed_b, max_gap);

@@ -21,6 +21,7 @@ void ContactFinder::place(const State& state, double t, int i) const {
       const double value = state.q[m.q0 + 7 + k];
       if (values.b[parameter] != value) {
         placed.points_current = false;
+        placed.hull.reset();
         placed.convex.reset();
       }
       values.b[parameter] = value;

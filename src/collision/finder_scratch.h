@@ -10,7 +10,7 @@
 #include <pliant/collision/find_contacts.h>
 #include <pliant/collision/mesh/find_on_mesh.h>
 
-#include "hull_pair.h"
+#include "hull/hull_pair.h"
 
 namespace pliant {
 
@@ -28,7 +28,7 @@ struct ContactFinder::Placed {
   std::optional<Vec3<double>> axes;           ///< semi-axes of an ellipsoid, m
   std::optional<Vec3<double>> half;           ///< half sizes of a box, m
   bool points_current = false;                ///< whether Scratch::points belongs to the present parameters
-  std::optional<bool> convex;                 ///< ContactFinder::is_convex() at the present parameters
+  std::optional<bool> hull, convex;           ///< uses_hull() and is_convex() at the present parameters
 
   /// Velocity of a point (world) by the prescribed motion, m/s, world.
   Vec3<double> frame_velocity(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
-#include "polygon.h"
+#include "hull/polygon.h"
 
 namespace pliant {
 

@@ -220,4 +220,16 @@ TEST_CASE("a can that leans on a table touches it with its lowest point, in all 
     }
 }
 
+TEST_CASE("the best of several local maxima is found for cylinders whose rims overlap", "[contact]") {
+  const Kind cylinder{"cylinder", "cylinder", {}, {{"a1", 0.06}, {"a2", 0.06}, {"a3", 0.09}}};
+  const Eigen::Quaterniond R_a(-0.36556593, 0.63943188, -0.26334756, -0.62300600),
+      R_b(0.05253304, -0.40056294, 0.55837079, -0.72457689);
+  Pair pair(cylinder, cylinder, R_a.normalized(), R_b.normalized(), {-0.12809975, 0.11608806, 0.10930347});
+  const std::vector<Contact> found = pair.contacts(0);
+  REQUIRE(!found.empty());
+  double gap = 0;
+  for (const Contact& contact : found) gap = std::min(gap, contact.gap);
+  CHECK(std::abs(gap + 0.00649) < 1e-5);  // from dense sampling of the normals
+}
+
 }  // namespace convex_pairs_test

@@ -43,37 +43,27 @@ bool Hull::is_affine(const Part& part) {
 }
 
 bool Hull::exists(const Part& part, const ParameterValues<double>& values) {
-  const ShapeInterface& shape = part.shape();
-  const double* a = values.b.data();
-  if (shape.hull_pieces() == 0 || !shape.has_support(a)) return false;
-  if (is_affine(part)) return true;
-  // With an exponent below 1 a superquadric is flat at some points, and radii of curvature are infinite.
-  for (int k = 0; k < shape.n_parameters(); ++k)
-    if (shape.parameters()[k].quantity == Quantity::exponent && a[k] < 1) return false;
-  return shape.is_convex(a) && !shape.has_flat_regions(a);
+  if (!is_affine(part)) return CurvedHull::exists(part, values);
+  return part.shape().hull_pieces() > 0 && part.shape().has_support(values.b.data());
 }
 
-Hull::Hull(const Part& part, const ParameterValues<double>& values, bool convex)
+bool Hull::is_convex(const Part& part, const ParameterValues<double>& values) {
+  return is_affine(part) ? part.shape().is_convex(values.b.data()) : CurvedHull(part, values).is_convex();
+}
+
+Hull::Hull(const Part& part, const ParameterValues<double>& values, Convexity convexity)
     : part_(&part),
       values_(&values),
       shape_(&part.shape()),
       a_(values.b.data()),
       size_(part.size()),
-      convex_(convex),
+      convexity_(convexity),
       map_(part.parameters().links().empty() ? Map::identity
            : is_affine(part)                 ? Map::affine
                                              : Map::curved),
       F_(Mat3<double>::Identity()),
-      image_(part, values) {
+      curved_(part, values) {
   if (map_ == Map::affine) F_ = part.chain_gradient(Eigen::Matrix3Xd::Zero(3, 1), values).front();
-  if (map_ == Map::curved) last_normals_.fill(Vec3<double>::Zero());
-}
-
-/// Returns a normal near that of the support point in the direction m, for a curved map.
-const Vec3<double>& Hull::start(const Vec3<double>& m, int piece) const {
-  Vec3<double>& normal = last_normals_[static_cast<std::size_t>(piece)];
-  if (normal.isZero(0)) normal = image_.start(m);
-  return normal;
 }
 
 Vec3<double> Hull::support(const Vec3<double>& m, int piece) const {
@@ -85,9 +75,7 @@ Vec3<double> Hull::support(const Vec3<double>& m, int piece) const {
     case Map::curved:
       break;
   }
-  const ImagePoint point = image_.farthest(m.normalized(), {piece, piece}, 0, start(m, piece), false);
-  last_normals_[static_cast<std::size_t>(piece)] = point.normal;
-  return point.x;
+  return curved_.support(m.normalized(), piece, nullptr);
 }
 
 Vec3<double> Hull::support(const Vec3<double>& m) const {
@@ -98,12 +86,7 @@ Vec3<double> Hull::support(const Vec3<double>& m) const {
 }
 
 Vec3<double> Hull::support(const Vec3<double>& m, int piece, Mat3<double>& slope) const {
-  if (map_ == Map::curved) {
-    const ImagePoint point = image_.farthest(m, {piece, piece}, 0, start(m, piece), true);
-    last_normals_[static_cast<std::size_t>(piece)] = point.normal;
-    slope = point.slope;
-    return point.x;
-  }
+  if (map_ == Map::curved) return curved_.support(m.normalized(), piece, &slope);
   using D = Dual<3>;
   const Vec3<double> pulled = F_.transpose() * m;
   const Vec3<D> x = shape_->support(
@@ -120,11 +103,7 @@ Vec3<double> Hull::end_face_normal(int piece) const {
   const Vec3<double> z = (piece == 0 ? 1.0 : -1.0) * Vec3<double>::UnitZ();
   if (map_ == Map::identity) return z;
   if (map_ == Map::affine) return (F_.inverse().transpose() * z).normalized();
-  const Vec3<double> x = Vec3<double>::UnitX();
-  const Vec3<double> centre =
-      0.5 * (shape_->support(x, a_, piece) + shape_->support(Vec3<double>(-x), a_, piece));
-  const Mat3<double> F = part_->chain_gradient(Eigen::Matrix3Xd(centre), *values_).front();
-  return F.col(0).cross(F.col(1)).normalized() * z[2];
+  return curved_.end_face_normal(piece);
 }
 
 Vec3<double> Hull::extents() const {
@@ -192,32 +171,21 @@ int Hull::parallel_end_face(const Vec3<double>& m, double one_point) const {
   return -1;
 }
 
-/// Appends a point; of points nearer to each other than needed.one_point (m) only the farthest in the
-/// direction m.
-void Hull::add_farthest(const Vec3<double>& m, const Vec3<double>& p, const Needed& needed,
-                        std::vector<Vec3<double>>& points) const {
-  if (m.dot(p) < needed.height) return;
-  const auto twin = find_near(points, 0, p, needed.one_point);
-  if (twin == points.end())
-    points.push_back(p);
-  else if (m.dot(p) > m.dot(*twin))
-    *twin = p;
-}
-
 void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face,
-                           const Needed& needed, int n_rim, std::vector<Vec3<double>>& points) const {
-  const bool flat = has_flat_regions(), has_local_points = map_ == Map::curved && !convex_;
+                           const PointLimits& limits, int n_rim, std::vector<Vec3<double>>& points) const {
+  const bool flat = has_flat_regions(),
+             has_local_points = map_ == Map::curved && convexity_ == Convexity::unknown;
   for (int piece = 0; piece < pieces(); ++piece) {
     if (piece == end_face)
-      add_rim(m, along, piece, needed.one_point, n_rim, points);
+      add_rim(m, along, piece, limits.one_point, n_rim, points);
     else if (has_local_points)
       continue;
     else if (flat)
-      add_face(m, piece, needed.one_point, points);
+      add_face(m, piece, limits.one_point, points);
     else
-      add_farthest(m, support(m, piece), needed, points);
+      add_farthest(m, support(m, piece), limits, points);
   }
-  if (has_local_points) add_local_points(m, end_face, needed, points);
+  if (has_local_points) curved_.add_local_points(m, end_face, limits, points);
 }
 
 }  // namespace pliant

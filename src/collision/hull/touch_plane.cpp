@@ -12,8 +12,8 @@ void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, d
   points.clear();
   const Vec3<double> down = -plane.normal;
   const double one_point = one_point_distance(thickness);
-  const Hull::Needed needed{one_point, plane.offset - max_gap - one_point};
-  hull.touching_points(down, plane.along, hull.parallel_end_face(down, one_point), needed, kRimPoints,
+  const PointLimits limits{one_point, plane.offset - max_gap - one_point};
+  hull.touching_points(down, plane.along, hull.parallel_end_face(down, one_point), limits, kRimPoints,
                        points);
   for (const Vec3<double>& p : points)
     if (const double height = plane.normal.dot(p) + plane.offset; height <= max_gap)

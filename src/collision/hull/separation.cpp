@@ -36,7 +36,7 @@ constexpr double kEqual = 1e-12;
 constexpr double kMinRadius = 1e-9, kStiffening = 16;
 /// An overlap deeper than this share of the thickness of the thinner part has several local maxima; the
 /// search then starts from all axes of both parts.
-constexpr double kDeep = 0.1;
+constexpr double kDeep = 0.01;
 /// A step that fails is halved this often before H changes.
 constexpr int kMaxHalvings = 6;
 /// A step that gains at least this share of the predicted increase of s is not halved.

@@ -1,16 +1,12 @@
 // The convex hull of a part in its body frame, by the support function of its shape (shape/shape.h). If the
 // chain of the part maps affinely (shear), the support point of the image F x of a shape in the direction m
 // is F times the support point of the shape in the direction F^T m. The support points of other chains are
-// found by Newton's method (image_support.h).
+// found by Newton's method (curved_hull.h).
 #pragma once
 
-#include <array>
-#include <limits>
 #include <vector>
 
-#include <pliant/part/part.h>
-
-#include "image_support.h"
+#include "curved_hull.h"
 
 namespace pliant {
 
@@ -23,20 +19,18 @@ double one_point_distance(double thickness);
 
 class Hull {
  public:
-  /// The points that touching_points() returns.
-  struct Needed {
-    double one_point;  ///< points nearer to each other than this are one, m
-    double height = -std::numeric_limits<double>::infinity();  ///< least m . x, m
-  };
   /// Returns whether the chain of a part is affine for all values of its parameters.
   static bool is_affine(const Part& part);
   /// Returns whether the support points of a part are known at these values: its shape has a support
-  /// function, and if the chain is not affine, the shape is convex without nearly flat regions.
+  /// function, and the chain is affine or CurvedHull::exists().
   static bool exists(const Part& part, const ParameterValues<double>& values);
-  /// part: its hull exists; it and values must outlive this object. convex: whether the part is known to be
-  /// convex. Else the points of touching_points() are searched from several starts, if the chain is not
-  /// affine.
-  Hull(const Part& part, const ParameterValues<double>& values, bool convex);
+  /// Returns whether a part whose hull exists is its hull.
+  static bool is_convex(const Part& part, const ParameterValues<double>& values);
+  /// What is known of a part when its Hull is made.
+  enum class Convexity { convex, unknown };
+  /// part: its hull exists; it and values must outlive this object. If the convexity is unknown and the chain
+  /// is not affine, touching_points() searches from several starts.
+  Hull(const Part& part, const ParameterValues<double>& values, Convexity convexity);
 
   int pieces() const { return shape_->hull_pieces(); }
   /// Whether a single piece has nearly flat regions, other than end faces.
@@ -44,9 +38,6 @@ class Hull {
   bool has_end_faces() const { return shape_->has_end_faces(); }
   /// The largest half extent of the part at rest, m.
   double size() const { return size_; }
-  /// Computes whether the part is its hull. If the chain is not affine, this is tested at sample points: the
-  /// surface must be curved outwards, and the sides between pieces must be straight.
-  bool test_convexity() const;
   /// Returns the point (m) of a piece that is farthest in the direction m.
   Vec3<double> support(const Vec3<double>& m, int piece) const;
   /// Returns the point (m) of the hull that is farthest in the direction m.
@@ -76,40 +67,21 @@ class Hull {
   /// face is represented by its corners, an edge or a generator by its ends, and a curved surface by one
   /// point. If the part is not convex, these are the points that are farthest among the points near them, and
   /// a generator or edge that is curved has such points between its ends, too. m: unit vector.
-  /// needed.height: of a part that is not convex, lower points may be left out.
-  void touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face, const Needed& needed,
-                       int n_rim, std::vector<Vec3<double>>& points) const;
+  void touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face,
+                       const PointLimits& limits, int n_rim, std::vector<Vec3<double>>& points) const;
 
  private:
   void add_face(const Vec3<double>& m, int piece, double one_point, std::vector<Vec3<double>>& points) const;
-  const Vec3<double>& start(const Vec3<double>& m, int piece) const;
-  // Functions of parts whose chain is not affine (curved_hull.cpp).
-  struct Axis;
-  bool has_plane_faces() const;
-  void add_farthest(const Vec3<double>& m, const Vec3<double>& p, const Needed& needed,
-                    std::vector<Vec3<double>>& points) const;
-  void add_local_points(const Vec3<double>& m, int end_face, const Needed& needed,
-                        std::vector<Vec3<double>>& points) const;
-  void add_hills(const Vec3<double>& m, const Needed& needed, std::vector<Vec3<double>>& points) const;
-  Axis axis() const;
-  void add_side(const Vec3<double>& m, int end_face, const Needed& needed,
-                std::vector<Vec3<double>>& points) const;
-  void add_edge(const Vec3<double>& m, const PieceFamily& edge, int n, const Needed& needed,
-                std::vector<Vec3<double>>& points) const;
-  void add_between(const Vec3<double>& m, const PieceFamily& family, const ImagePoint& before,
-                   const ImagePoint& after, const Needed& needed, std::vector<Vec3<double>>& points) const;
 
   const Part* part_;
   const ParameterValues<double>* values_;
   const ShapeInterface* shape_;
   ShapeParameters a_;
   double size_;
-  bool convex_;
+  Convexity convexity_;
   enum class Map { identity, affine, curved } map_;
   Mat3<double> F_;  // of an affine map
-  ImageSupport image_;
-  // Normals of the last support points of a curved map: the search for the next ones starts from them.
-  mutable std::array<Vec3<double>, static_cast<std::size_t>(kMaxHullPieces)> last_normals_;
+  CurvedHull curved_;
 };
 
 }  // namespace pliant

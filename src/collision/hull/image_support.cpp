@@ -15,13 +15,17 @@ constexpr int kMaxNewtonSteps = 40, kMaxStepHalvings = 12;
 constexpr double kDifference = 1e-6;
 /// Longest step of the normal (rad) and of the share.
 constexpr double kLongestTurn = 0.5;
-/// The search ends after a step shorter than this: the error is then about its square.
+/// The search ends after a step of the normal (rad) and of the share that is shorter than this. Since
+/// derivatives are differences, the error is then about kDifference times the step.
 constexpr double kLastTurn = 3e-7;
 /// A step may lose this much height by rounding, in sizes of the part.
 constexpr double kHeightLoss = 1e-14;
 /// The surface is convex if the eigenvalues of the relative curvature exceed this; for an affine map they
 /// are 1.
 constexpr double kConvexMargin = 0.05;
+/// Least cosine of the angle between g and the normal from which Newton's method starts; below it the normal
+/// is set to g first. At cosine -1 the height is least.
+constexpr double kLeastCosine = 0.3;
 
 }  // namespace
 
@@ -98,10 +102,12 @@ ImageSupport::Local ImageSupport::evaluate(const Vec3<double>& m, const PieceFam
 }
 
 /// Ascends the height m . x by Newton's method. A step that does not ascend is halved. Where the height is
-/// not concave, the normal turns to the direction of g instead.
+/// not concave, the normal turns towards g instead.
 ImageSupport::Local ImageSupport::ascend(const Vec3<double>& m, const PieceFamily& family, bool free_share,
                                          Local at) const {
   const double rounding = kHeightLoss * part_.size();
+  if (!(at.g.dot(at.normal) > kLeastCosine * at.g.norm()) && !at.g.isZero(0))
+    at = evaluate(m, family, at.share, at.g.normalized());
   for (int k = 0; k < kMaxNewtonSteps; ++k) {
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     const Eigen::Matrix2d A = at.slope.topLeftCorner<2, 2>();
@@ -111,7 +117,7 @@ ImageSupport::Local ImageSupport::ascend(const Vec3<double>& m, const PieceFamil
     else if (concave)
       step.head<2>() = -A.inverse() * at.residual.head<2>();
     else
-      step.head<2>() = at.residual.head<2>() / std::max(at.g.dot(at.normal), 0.1 * at.g.norm());
+      step.head<2>() = at.residual.head<2>() / std::max(at.g.dot(at.normal), kLeastCosine * at.g.norm());
     if ((at.share <= 0 && step[2] < 0) || (at.share >= 1 && step[2] > 0)) return at;
     if (const double length = step.norm(); length > kLongestTurn) step *= kLongestTurn / length;
     const bool last = step.norm() < kLastTurn;

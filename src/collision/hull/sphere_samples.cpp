@@ -7,6 +7,9 @@ namespace pliant {
 namespace {
 /// Neighbours are at most this far apart (rad); others are farther.
 constexpr double kNeighbourAngle = 0.8;
+/// The cosine of the angle between the ends of an edge of the icosahedron is 1 / sqrt(5), between other
+/// corners it is negative.
+constexpr double kEdgeOfIcosahedron = 0.4;
 }  // namespace
 
 SphereSamples::SphereSamples() {
@@ -23,7 +26,7 @@ SphereSamples::SphereSamples() {
       }
   for (std::size_t i = 0; i < kCorners; ++i)
     for (std::size_t j = i + 1; j < kCorners; ++j)
-      if (directions[i].dot(directions[j]) > 0.4)  // the ends of an edge; its cosine is 0.447
+      if (directions[i].dot(directions[j]) > kEdgeOfIcosahedron)
         directions[n++] = (directions[i] + directions[j]).normalized();
   for (std::size_t i = 0; i < kCount; ++i)
     for (std::size_t j = 0; j < kCount; ++j)

@@ -1,6 +1,6 @@
 // Support points of deformed solids. The image of a convex piece under a chain of deformations T that is not
-// affine has no support function in closed form. Its point x = T(e) is farthest in the direction m, to first
-// order, where the pulled back direction g = F^T m with F = dT/de is the outward normal nu of the undeformed
+// affine has no support function in closed form. Its point x = T(e) can be farthest in the direction m only
+// where the pulled back direction g = F^T m with F = dT/de is the outward normal nu of the undeformed
 // piece at e. So nu is the unknown: e = e(nu) is the support point of the piece, and Newton's method solves
 // g x nu = 0 (Barr 1984 has the rule of normals; shape/shape.h has e and its derivative).
 #pragma once

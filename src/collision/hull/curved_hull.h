@@ -1,0 +1,83 @@
+// Parts whose chain of deformations is not affine (taper, twist, bend): support points, the test whether the
+// part is convex, and the points that are farthest in a direction among the points near them.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "image_support.h"
+
+namespace pliant {
+
+/// Which points a search returns.
+struct PointLimits {
+  double one_point;  ///< of points nearer to each other than this (m) one is kept
+  /// Points with a smaller m . x (m) may be left out.
+  double least_height = -std::numeric_limits<double>::infinity();
+};
+
+/// Adds a point; of points nearer to each other than limits.one_point only the farthest in the direction m.
+void add_farthest(const Vec3<double>& m, const Vec3<double>& p, const PointLimits& limits,
+                  std::vector<Vec3<double>>& points);
+
+class CurvedHull {
+ public:
+  /// Whether this class finds the points of a part at these values. The shape must be convex, without nearly
+  /// flat regions and exponents below 1, and have one piece, two pieces or those of a box. Only affine links
+  /// may follow a bend, and the chain must not turn by more than about 1 rad per seventh of the length, or 3
+  /// rad in all if there is one piece.
+  static bool exists(const Part& part, const ParameterValues<double>& values);
+  /// part and values must outlive this object.
+  CurvedHull(const Part& part, const ParameterValues<double>& values);
+
+  /// Returns the point (m) of the image of a piece that is farthest in the direction m (unit vector), at
+  /// least near it. slope: if given, its derivative by m, m.
+  Vec3<double> support(const Vec3<double>& m, int piece, Mat3<double>* slope) const;
+  /// Returns the outward unit normal of end face 0 or 1.
+  Vec3<double> end_face_normal(int piece) const;
+  /// Whether the part is convex, tested at samples: a surface with one piece must be curved outwards, sides
+  /// must be developable, and the faces of boxes must be plane. With dynamic parameters of the chain, parts
+  /// with several pieces count as not convex, because their sides are exact for single values only.
+  bool is_convex() const;
+  /// Appends the points of the surface that are farthest in the direction m among the points near them, and
+  /// the ends of all edges and generators. end_face: the number of an end face whose points are left out, or
+  /// -1.
+  void add_local_points(const Vec3<double>& m, int end_face, const PointLimits& limits,
+                        std::vector<Vec3<double>>& points) const;
+
+ private:
+  static constexpr int kMaxIntervals = 16;
+  using Stations = std::array<ImagePoint, static_cast<std::size_t>(kMaxIntervals) + 1>;
+
+  /// The chain along the z axis.
+  struct Axis {
+    static constexpr int kPlaces = 8;
+    std::array<Mat3<double>, kPlaces> F;  ///< dT/de at equal distances, from the upper end to the lower one
+    double turn, largest_turn;            ///< sum and maximum of the turns from place to place, rad
+    int intervals() const;                ///< number of intervals into which generators and edges are divided
+  };
+  Axis axis() const;
+  Vec3<double> undeformed(const Vec3<double>& m, int piece) const;
+  Vec3<double> sample_normal(std::size_t k, const Vec3<double>& half_sizes) const;
+  Vec3<double> half_sizes() const;
+  bool has_developable_sides() const;
+  bool has_plane_faces() const;
+  bool is_straight(const Vec3<double>& from, const Vec3<double>& to) const;
+  void add_hills(const Vec3<double>& m, const PointLimits& limits, std::vector<Vec3<double>>& points) const;
+  void add_side(const Vec3<double>& m, int end_face, const PointLimits& limits,
+                std::vector<Vec3<double>>& points) const;
+  void add_edge(const Vec3<double>& m, const PieceFamily& edge, int n, const PointLimits& limits,
+                std::vector<Vec3<double>>& points) const;
+  void add_inner(const Vec3<double>& m, const PieceFamily& family, const Stations& stations, int n,
+                 const PointLimits& limits, std::vector<Vec3<double>>& points) const;
+
+  const Part& part_;
+  const ParameterValues<double>& values_;
+  const ShapeInterface& shape_;
+  ImageSupport image_;
+  // Normals of the last support points: the search for the next ones starts from them.
+  mutable std::array<Vec3<double>, static_cast<std::size_t>(kMaxHullPieces)> last_normals_;
+};
+
+}  // namespace pliant
