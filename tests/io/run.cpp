@@ -383,13 +383,13 @@ TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps
   CHECK(joint_estimate.gap < 1e-14);
   CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == joint_estimate.joint_force);
 
-  // A box that slides to a stop, with error control. estimate_error() repeats the run with contact steps of
-  // half the length, and then restores the setting longest_step of the scene.
+  // A box that slides and spins to a stop, with error control. estimate_error() repeats the run with contact
+  // steps of half the length, and then restores the setting longest_step of the scene.
   auto box = scene_of("box");
   box->tolerance = 1e-6;
   box->integrator = "dop853";
   Part& part = box->body.add(make_part("box", "box", {}, 1000));
-  part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).velocity({1, 0, 0}, {0, 0, 0});
+  part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).velocity({1, 0, 0}, {0, 0, 5});
   box->body.contact.active = true;
   box->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   const ErrorEstimate contact_estimate = estimate(*box);

@@ -15,8 +15,9 @@ namespace pliant {
 
 namespace contact_problem {
 
-/// Joints fix a contact if its response to impulses (change of relative velocity per impulse) is below this
-/// share of its response without joints. Such a contact gets no impulse.
+/// Joints fix a contact if its normal response to a normal impulse (change of relative velocity per impulse)
+/// is below this share of its response without joints. Such a contact gets no impulse: a corner of a hinged
+/// part at the level of the hinge would otherwise stop the part by an arbitrarily large impulse.
 inline constexpr double kFixedShare = 1e-9;
 
 /// Returns the normal and two tangents of a contact as columns, unit vectors, world.
@@ -174,10 +175,9 @@ PLIANT_INLINE void ContactProblem::complete() {
     for (std::size_t k = i; k < sides_.size(); ++k)
       if (sides_[k].mover == number) add_response(mover, sides_[k], rows, Y);
   }
-  const double free_response = system_.effect(contact, contact).diagonal().maxCoeff();
+  const double free_response = system_.effect(contact, contact)(0, 0);
   if (jointed) add_joint_responses(contact);
-  if (!(system_.effect(contact, contact).diagonal().maxCoeff() >
-        contact_problem::kFixedShare * free_response)) {
+  if (!(system_.effect(contact, contact)(0, 0) > contact_problem::kFixedShare * free_response)) {
     system_.drop_pushes();
     while (!joints_.empty() && joints_.back().contact == contact) joints_.pop_back();
   }

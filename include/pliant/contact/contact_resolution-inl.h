@@ -128,8 +128,6 @@ PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
       state.contact_cache.empty() || state.contact_cache_age >= contact_resolution::kMaxWarmStartAge;
 }
 
-/// Sets the start values of the impulses to those of the cached forces over h seconds. Contacts that are not
-/// in the cache start from zero, and so do all contacts of a cold start.
 PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, double h,
                                                  const std::vector<Contact>& contacts,
                                                  ContactProblem& problem) const {
@@ -390,7 +388,7 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
       contacts.end());
 }
 
-/// Stage 6 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
+/// Stage 7 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
 /// that this separation pushes into others are separated completely.
 PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
   State& state = step.state;

@@ -54,6 +54,10 @@ class ContactResolution {
   /// than min_impact_speed (m/s) are ignored.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
+  /// Sets the start values of the impulses of a problem to those of the cached forces over h seconds.
+  /// Contacts that are not in the cache start from zero, and so do all contacts of a cold start.
+  void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
+                  ContactProblem& problem) const;
   /// After a change of velocities and coordinates of some parts, projects all joints and the frames of these
   /// parts if they deform locally (project_frames).
   void reconcile(StepContext& step, const std::vector<int>& parts) const;
@@ -77,8 +81,6 @@ class ContactResolution {
   void append_to_record(const std::vector<Contact>& contacts, const ContactSolution& solution);
   double largest_separation(const Contact& contact, double h) const;
   void extend_travel(const Contact& contact, double distance);
-  void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
-                  ContactProblem& problem) const;
   void record_resolved(const State& state, double t, const std::vector<Contact>& contacts,
                        const ContactProblem& problem, const std::vector<Vec3<double>>& impulses);
   Vec3<double> local_position(const Contact& contact, const State& state, double t) const;

@@ -60,7 +60,8 @@ PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics)
       meshes_(dynamics.model(), finder_.obstacles()),
       resting_(dynamics.model(), finder_),
       resolution_(dynamics, finder_, meshes_, resting_, record_),
-      sleeping_(dynamics, resting_, meshes_) {
+      sleeping_(dynamics, resting_, meshes_),
+      friction_events_(dynamics, finder_, resting_, resolution_, sleeping_) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
   few_parts_ =
@@ -71,6 +72,7 @@ PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics)
 PLIANT_INLINE void ContactStepping::begin_step() {
   resting_at_start_.clear();
   has_unlocated_ = false;
+  at_friction_event_ = false;
   std::swap(record_, record_before_);
   record_.clear();
 }
@@ -128,25 +130,26 @@ struct ContactStepping::Motion {
   bool is_free() const { return predicted.empty && travelled.empty; }
 };
 
-PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step, bool to_event) {
+PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step, double tolerance) {
   State& state = step.state;
   const double start = state.start, h = state.h;
   const std::int64_t number = state.step;
   Progress progress = begin(method, step);
   double length = h;
   while (!progress.finished()) {
-    Motion motion = advance(progress);                        // 1 predict, 2 advance, 3 detect
-    if (!state.q.allFinite() || !state.v.allFinite()) break;  // the caller reports the failure
+    Motion motion = advance(progress);                                      // 1 predict, 2 advance, 3 detect
+    if (tolerance > 0) cut_at_friction_event(motion, progress, tolerance);  // 4 locate changes of friction
+    if (!state.q.allFinite() || !state.v.allFinite()) break;                // the caller reports the failure
     if (motion.is_free()) {
       progress.now = motion.free.end();
       continue;
     }
-    record_resting(motion, to_event);
-    const bool impact = locate_and_apply_impact(motion, progress);  // 4 locate the first impact
-    if (!impact) resolve(motion, progress);                         // 5 resolve, 6 correct
+    record_resting(motion, tolerance);
+    const bool impact = locate_and_apply_impact(motion, progress);  // 5 locate the first impact
+    if (!impact) resolve(motion, progress);                         // 6 resolve, 7 correct
     const bool event =
         impact ? progress.now > progress.begin : !progress.finished() && few_parts_ && has_contact_error();
-    if (to_event && event) {
+    if (tolerance > 0 && event) {
       length = progress.now - progress.begin;
       break;
     }
@@ -156,7 +159,7 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   state.h = h;
   record_.h += length;
   resolution_.end_step(length, state);
-  sleeping_.fall_asleep(record_.contacts, progress.begin, length, state);  // 7 sleep
+  sleeping_.fall_asleep(record_.contacts, progress.begin, length, state);  // 8 sleep
   return length;
 }
 
@@ -279,9 +282,24 @@ PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& con
   return true;
 }
 
+/// Stage 4: ends the motion at the first change of friction at its resting contacts, in models with few
+/// moving parts: the motion is repeated shorter.
+PLIANT_INLINE void ContactStepping::cut_at_friction_event(Motion& motion, Progress& progress,
+                                                          double tolerance) {
+  if (!few_parts_ || motion.resting.empty() || motion.contacts.empty()) return;
+  const std::optional<double> event = friction_events_.first(
+      {progress.method, progress.step, motion.free, motion.resting, motion.contacts}, tolerance);
+  progress.clock.lap(times_.resolution);
+  if (!event) return;
+  progress.longest = *event;
+  progress.step.state = motion.free.before;
+  motion = advance(progress);
+  at_friction_event_ = motion.free.h == *event;
+}
+
 /// Records the resting contacts of a motion, for the error estimate of contact.
-PLIANT_INLINE void ContactStepping::record_resting(const Motion& motion, bool to_event) {
-  if (to_event && few_parts_)
+PLIANT_INLINE void ContactStepping::record_resting(const Motion& motion, double tolerance) {
+  if (tolerance > 0 && few_parts_)
     resting_at_start_.insert(resting_at_start_.end(), motion.resting.begin(), motion.resting.end());
   else
     has_unlocated_ = has_unlocated_ || !motion.resting.empty();
@@ -301,7 +319,7 @@ PLIANT_INLINE std::vector<Contact> ContactStepping::impacts_to_locate(const Moti
   return impacts;
 }
 
-/// Stage 4: cuts the motion at its first impact, if the impact can be located, and applies the impulses
+/// Stage 5: cuts the motion at its first impact, if the impact can be located, and applies the impulses
 /// there. Returns whether the motion was cut. locate_impact() is in impact_timing.h.
 PLIANT_INLINE bool ContactStepping::locate_and_apply_impact(Motion& motion, Progress& progress) {
   StepCounters& counters = progress.step.counters;
@@ -370,7 +388,7 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
   progress.clock.lap(times_.resolution);
 }
 
-/// Stages 5 and 6: applies the impulses at the contacts at the end of the motion, and separates the overlaps
+/// Stages 6 and 7: applies the impulses at the contacts at the end of the motion, and separates the overlaps
 /// that remain.
 PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) {
   const FreeMotion& free = motion.free;

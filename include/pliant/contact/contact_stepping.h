@@ -10,6 +10,7 @@
 #include <pliant/collision/find_contacts.h>
 #include <pliant/collision/mesh/mesh_finder.h>
 #include <pliant/contact/contact_resolution.h>
+#include <pliant/contact/friction_events.h>
 #include <pliant/contact/resting_contacts.h>
 #include <pliant/contact/sleeping.h>
 #include <pliant/method/integrator.h>
@@ -26,16 +27,17 @@ class ContactStepping {
   /// the record by that of the step before.
   void begin_step();
   void undo_step();
-  /// Advances q, v, work, modes and contact cache of step.state by state.h seconds, or less with to_event.
-  /// Returns the length of the step, s. The caller increments State::step. to_event: the step ends at the
-  /// first impact that is located after its start. In models with few moving parts it also ends after a
-  /// motion with resting contacts, or with contacts whose time was not located.
-  double step(Integrator& method, StepContext& step, bool to_event = false);
+  /// Advances q, v, work, modes and contact cache of step.state by state.h seconds, or less with a tolerance.
+  /// Returns the length of the step, s. The caller increments State::step. tolerance: that of the simulation,
+  /// or 0 if there is none. With a tolerance the step ends at the first event after its start: an impact, or
+  /// a change of friction (FrictionEvents). In models with few moving parts it also ends after a motion with
+  /// resting contacts, or with contacts whose time was not located.
+  double step(Integrator& method, StepContext& step, double tolerance = 0);
   /// Repeats a step with resting or unlocated contacts as two half steps. If both results agree in modes and
   /// contacts and the error is at most 1, extrapolates from both (Richardson). Impulses that stand for forces
   /// over a step have an error of O(h^2), which the difference of both results estimates; the error of the
-  /// extrapolation is O(h^3). If the step ended at an impact, the halves locate the impact themselves and are
-  /// not extrapolated. initial: the state at the start, with the length of the step before any impact
+  /// extrapolation is O(h^3). If the step ended at an event, the halves locate the event themselves and are
+  /// not extrapolated. initial: the state at the start, with the length of the step before any event
   /// shortened it. length: the actual length of the step, s. impacts: the count of impacts before the step.
   /// step.state: on input the state at the end of the step, on output that of the halves. Returns the larger
   /// of two errors, in tolerances, and the length of the halves. The first is that of contact, the second
@@ -78,7 +80,8 @@ class ContactStepping {
   ContactFinder::Neighbourhood look_ahead(const State& state, double now, double length, double fall,
                                           bool touch);
   bool wake_touched(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
-  void record_resting(const Motion& motion, bool to_event);
+  void cut_at_friction_event(Motion& motion, Progress& progress, double tolerance);
+  void record_resting(const Motion& motion, double tolerance);
   std::vector<Contact> impacts_to_locate(const Motion& motion) const;
   bool locate_and_apply_impact(Motion& motion, Progress& progress);
   void apply_impact(const Motion& motion, const std::vector<Contact>& impacts, Progress& progress);
@@ -91,7 +94,7 @@ class ContactStepping {
     const double length;                 ///< s
     const std::vector<Contact> resting;  ///< resting contacts in the step
     const std::size_t contacts;          ///< number of contacts that the step resolved
-    const bool has_impact;               ///< whether the step ended at an impact
+    const bool has_event;                ///< whether the step ended at an event
   };
   struct Halves {
     double first = 0, length = 0;     ///< lengths of the first half and of both, s
@@ -99,8 +102,9 @@ class ContactStepping {
     VecX<double> gravity_velocities;  ///< n_v: velocities by gravity of parts that lost a contact
     bool finite = false;
   };
-  Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial);
-  bool agree(const Whole& whole, const Halves& halves, bool has_impact, const State& state) const;
+  Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial,
+                     double tolerance);
+  bool agree(const Whole& whole, const Halves& halves, bool has_event, const State& state) const;
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
   void extrapolate(StepContext& step, const State& whole, std::size_t second);
@@ -112,12 +116,14 @@ class ContactStepping {
   ContactRecord record_, record_before_;
   ContactResolution resolution_;
   Sleeping sleeping_;
+  FrictionEvents friction_events_;
   Workspace<double> scratch_;
   bool few_parts_ = false;  ///< whether the model has so few moving parts that impacts are located
   // Of the last step: contacts that rested at the start of a motion, and whether there were contacts whose
   // time was not located.
   std::vector<Contact> resting_at_start_;
   bool has_unlocated_ = false;
+  bool at_friction_event_ = false;  ///< whether the last step ended at a change of friction
   StageTimes times_;
 };
 

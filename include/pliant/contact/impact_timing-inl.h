@@ -17,8 +17,8 @@ namespace pliant {
 
 namespace impact_timing {
 
-/// The time of an impact is exact if the gap is at most kGapTolerance sizes of the smallest part, or if the
-/// time is known to kTimeTolerance of the motion.
+/// The time of an impact is exact if the gap or overlap is at most kGapTolerance sizes of the smallest part,
+/// or if the time is known to kTimeTolerance of the motion.
 inline constexpr double kGapTolerance = 1e-13, kTimeTolerance = 1e-15;
 /// Largest number of trial times of each search.
 inline constexpr int kMaxTrials = 60;
@@ -33,7 +33,7 @@ inline constexpr double kPathTolerance = 1e-9;
 /// The rate of a gap is computed from times that differ by more than this, as a share of the motion. For
 /// nearer times the difference of the gaps is rounding.
 inline constexpr double kMinRateInterval = 1e-6;
-/// After this number of secant steps the search uses the bracket only.
+/// After this number of secant steps the search halves the bracket.
 inline constexpr int kMaxSecants = 8;
 
 /// An interval of times, s, that contains the impact, with the gaps at its ends, m: positive at the lower
@@ -160,21 +160,30 @@ inline Bracket bracket_impact(ImpactGap& gap, double gap_at_start, double h) {
 }
 
 /// Returns the exact time of impact by the secant method with steps of the method of integration, within a
-/// bracket; the state is at this time afterwards. approximate: the time and rate on the dense output.
+/// bracket; the state is at this time afterwards. approximate: the time and rate on the dense output. If the
+/// sides overlap deeply enough at the end of the bracket, the time is that of a small overlap: points that
+/// graze the other side then do not end the search before other points meet it, a little later and faster.
 inline double refine_impact(ImpactGap& gap, Bracket bracket, double h, TimeAndRate approximate) {
+  const double exact = kGapTolerance * gap.size(), overlap = bracket.f_high < -exact ? 0.5 * exact : 0,
+               accuracy = overlap > 0 ? 0.5 * overlap : exact;
+  bracket.f_low += overlap;
+  bracket.f_high += overlap;
   auto [tau, rate] = approximate;
   double last = 0, f_last = 0;
   for (int i = 0; i < kMaxTrials && bracket.high - bracket.low > kTimeTolerance * h &&
-                  !(std::abs(bracket.f_high) <= kGapTolerance * gap.size());
+                  !(std::abs(bracket.f_high) <= accuracy);
        ++i) {
-    const double f = gap.at_time(tau);
-    if (std::abs(f) <= kGapTolerance * gap.size()) return tau;
+    const double f = gap.at_time(tau) + overlap;
+    if (std::abs(f) <= accuracy) return tau;
     if (i > 0) rate = (f - f_last) / (tau - last);
     bracket.narrow(tau, f);
     last = tau;
     f_last = f;
     tau -= f / rate;
-    if (i >= kMaxSecants || !(tau > bracket.low && tau < bracket.high)) tau = bracket.guess();
+    if (i >= kMaxSecants)
+      tau = 0.5 * (bracket.low + bracket.high);
+    else if (!(tau > bracket.low && tau < bracket.high))
+      tau = bracket.guess();
   }
   gap.move_to(bracket.high);
   return bracket.high;

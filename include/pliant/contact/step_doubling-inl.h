@@ -63,20 +63,6 @@ inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts
   return gravity;
 }
 
-/// Returns whether a body at a contact, or a joint in the island of such a body, has prescribed motion. Such
-/// bodies may have moved during a step although they are at the same place at both ends.
-inline bool has_prescribed_motion(const Model& model, const std::vector<Contact>& contacts) {
-  auto moves = [&](const ContactSide& side) {
-    return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
-  };
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [&](const Contact& c) {
-                       return moves(c.a) || moves(c.b) ||
-                              (c.plane >= 0 && !model.body().contact.planes[at(c.plane)].point.is_constant());
-                     }) ||
-         are_driven(model, parts_touched(model, contacts));
-}
-
 /// Returns whether parts were at rest in a step: their states at its start (initial) and at its end (state)
 /// differ by at most kAtRestTolerance.
 inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts,
@@ -105,24 +91,24 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   State& state = step.state;
   std::vector<Contact> touching = resting_at_start_;
   touching.insert(touching.end(), record_.contacts.begin(), record_.contacts.end());
-  if (!step_doubling::has_prescribed_motion(model, touching) &&
+  if (!has_prescribed_motion(model, touching) &&
       step_doubling::were_at_rest(model, scale, parts_touched(model, touching), initial, state))
     return {0, order, length};
   const Whole whole{state, length, resting_at_start_, record_.contacts.size(),
-                    step.counters.impacts > impacts};
+                    step.counters.impacts > impacts || at_friction_event_};
   step.counters.impacts = impacts;
   undo_step();
   begin_step();
   state = initial;
-  const Halves halves = step_halves(method, step, whole, initial);
+  const Halves halves = step_halves(method, step, whole, initial, scale.tolerance());
   const double method_error = method.pop_error();
   if (!halves.finite || !(method_error <= 1))
     return {std::numeric_limits<double>::infinity(), order, halves.length};
-  const bool has_impact = step.counters.impacts > impacts;
-  const bool agreed = agree(whole, halves, has_impact, state);
+  const bool has_event = step.counters.impacts > impacts || at_friction_event_;
+  const bool agreed = agree(whole, halves, has_event, state);
   const double contact_error = difference(whole, halves, agreed, scale, initial.time(), state);
   const double error = std::max(contact_error, method_error);
-  if (agreed && !whole.has_impact && error <= 1) {
+  if (agreed && !whole.has_event && error <= 1) {
     StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
                        halves.length);
     extrapolate(at_end, whole.state, halves.first_contacts);
@@ -132,13 +118,14 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
 
 /// Repeats the step from `initial` as two halves; step.state is the state at their end.
 PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& method, StepContext& step,
-                                                                   const Whole& whole, const State& initial) {
+                                                                   const Whole& whole, const State& initial,
+                                                                   double tolerance) {
   State& state = step.state;
   const double start = initial.time(), half = 0.5 * whole.length;
   auto advance_by = [&](double into, double h) {
     set_step(state, start + into, h);
     StepContext part(dynamics_, state, step.work, step.counters);
-    return this->step(method, part, true);
+    return this->step(method, part, tolerance);
   };
   Halves halves;
   halves.first = halves.length = advance_by(0, half);
@@ -148,10 +135,11 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
       step_doubling::gravity_after_loss(dynamics_.model(), resting_, whole.resting, record_.contacts, start);
   resting_at_start_.clear();
   has_unlocated_ = false;
+  at_friction_event_ = false;
   auto finite = [&] { return state.q.allFinite() && state.v.allFinite(); };
   halves.finite = finite();
   if (halves.finite) {
-    const double end = whole.has_impact && halves.first == half ? initial.h : whole.length;
+    const double end = whole.has_event && halves.first == half ? initial.h : whole.length;
     halves.length = halves.first + advance_by(halves.first, end - halves.first);
     halves.finite = finite();
   }
@@ -162,16 +150,16 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
 }
 
 /// Returns whether the whole step and its halves have equal lengths, modes of joints, limits and sleep, and
-/// numbers of contacts, and whether both or neither ended at an impact. If both ended at an impact, total
+/// numbers of contacts, and whether both or neither ended at an event. If both ended at an event, total
 /// lengths and the contacts of the first half are not compared; the first half must still have its full
-/// length. has_impact: whether the halves ended at an impact.
-PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_impact,
+/// length. has_event: whether the halves ended at an event.
+PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_event,
                                           const State& state) const {
-  return halves.first == 0.5 * whole.length && has_impact == whole.has_impact &&
-         (whole.has_impact || halves.length == whole.length) && state.at_limit == whole.state.at_limit &&
+  return halves.first == 0.5 * whole.length && has_event == whole.has_event &&
+         (whole.has_event || halves.length == whole.length) && state.at_limit == whole.state.at_limit &&
          state.joints == whole.state.joints && same_sleepers(state.at_rest, whole.state.at_rest) &&
          record_.contacts.size() - halves.first_contacts == whole.contacts &&
-         (whole.has_impact || halves.first_contacts == whole.contacts);
+         (whole.has_event || halves.first_contacts == whole.contacts);
 }
 
 /// Returns the difference between the whole step and its halves, or the error by contacts that the first half

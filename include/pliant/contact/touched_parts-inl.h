@@ -92,6 +92,18 @@ PLIANT_INLINE bool are_driven(const Model& model, const std::vector<int>& parts)
   });
 }
 
+PLIANT_INLINE bool has_prescribed_motion(const Model& model, const std::vector<Contact>& contacts) {
+  auto moves = [&](const ContactSide& side) {
+    return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
+  };
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) {
+                       return moves(c.a) || moves(c.b) ||
+                              (c.plane >= 0 && !model.body().contact.planes[at(c.plane)].point.is_constant());
+                     }) ||
+         are_driven(model, parts_touched(model, contacts));
+}
+
 PLIANT_INLINE void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                                     const std::vector<Contact>& contacts, Workspace<double>& work) {
   const Model& model = dynamics.model();

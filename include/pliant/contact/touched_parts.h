@@ -11,6 +11,9 @@ namespace pliant {
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts);
 /// Returns whether a joint in the islands of some parts follows a prescribed path. Strings are not examined.
 bool are_driven(const Model& model, const std::vector<int>& parts);
+/// Returns whether a body at a contact, or a joint in the island of such a body, has prescribed motion. Such
+/// bodies may have moved during a step although they are at the same place at both ends.
+bool has_prescribed_motion(const Model& model, const std::vector<Contact>& contacts);
 /// Evaluates the quantities that ContactProblem needs at a state and a time t (s), and stores them in work:
 /// masses of touched parts without joints, and masses and joint factors of touched islands. A part that is
 /// touched at its nodes and moves by nodes (moves_by_nodes) is left out. If a part without joints moves by

@@ -329,7 +329,7 @@ PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
 /// early, at an impact.
 PLIANT_INLINE double Simulation::integrate() {
   StepContext step = context();
-  if (contact_) return contact_->step(*integrator_, step, scale_.has_value());
+  if (contact_) return contact_->step(*integrator_, step, scale_ ? scale_->tolerance() : 0);
   integrator_->step(step);
   return state_.h;
 }

@@ -1,0 +1,326 @@
+// Function bodies of friction_events.h. first() lists the steps of the search; locate_end() finds the time at
+// which a positive function of time ends.
+#pragma once
+
+#include <pliant/contact/friction_events.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <pliant/contact/contact_pairs.h>
+#include <pliant/contact/impact_timing.h>
+#include <pliant/contact/touched_parts.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace friction_events {
+
+/// Slides shorter than this multiple of the tolerance, in sizes of the smaller part, do not matter. A contact
+/// sticks if it slides at most by this distance in a second, plus the speeds of these multiples of the
+/// residual of the last contact solution and of rounding.
+inline constexpr double kSlowInTolerances = 1e-2, kSlowInResiduals = 8, kSlowInRounding = 64;
+/// A probe is a motion of this share of the motion that is examined. It shows whether contacts that stick at
+/// its start begin to slip.
+inline constexpr double kProbe = 1e-3;
+/// A contact slips in a probe if its speed grows by more than this share of the largest contact velocity
+/// without impulses. Its speed at the start of the probe is not zero if the contact point moves on the part.
+inline constexpr double kProbeSlip = 1e-7;
+/// Sticking contacts that use at most this share of the largest friction during a motion are not probed: a
+/// force of friction that grows linearly from zero, with this mean, does not reach its limit in the motion.
+inline constexpr double kSafeUse = 0.45;
+/// A contact begins to slip where its acceleration is at most this share of that at the end of the motion.
+inline constexpr double kSlipTolerance = 1e-6;
+/// Loads are constant if accelerations at the start and at this share of the motion differ by at most this
+/// share of the largest acceleration.
+inline constexpr double kSampledLoads = 0.618, kEqualLoads = 1e-9;
+/// Accuracy of the time of an event, as a share of the motion.
+inline constexpr double kTimeTolerance = 1e-14;
+/// Smallest positive value of the function whose end is sought, in values at which the search ends.
+inline constexpr double kZero = 0.1;
+/// Largest number of trial times of a search, and of halvings that look for a time before the event.
+inline constexpr int kMaxTrials = 80, kMaxHalvings = 20;
+
+/// An interval of times, s. A function is positive at `inside`, where its value is `value`, and not positive
+/// at `outside`; either may be the later time.
+struct Interval {
+  double inside, value, outside;
+};
+
+/// Returns the time at which a function of time ceases to be positive: a time at which its value is near
+/// `target`, or the end `outside` of an interval of length `accuracy`. Beyond the time sought the function is
+/// zero within rounding, so the search alternates between secants through positive values and halvings.
+/// Values up to kZero times `target` count as zero.
+template <class F>
+double locate_end(Interval interval, double target, double accuracy, F&& function) {
+  double last = 0, last_value = 0;
+  bool has_last = false;
+  for (int i = 0; i < kMaxTrials && std::abs(interval.outside - interval.inside) > accuracy; ++i) {
+    auto& [inside, value, outside] = interval;
+    double tau = 0.5 * (inside + outside);
+    if (has_last && i % 3 != 0) {
+      const double secant = inside + (0.5 * target - value) * (inside - last) / (value - last_value);
+      if ((secant - inside) * (secant - outside) < 0) tau = secant;
+    }
+    const double now = function(tau);
+    if (!(now > kZero * target)) {
+      outside = tau;
+      continue;
+    }
+    last = std::exchange(inside, tau);
+    last_value = std::exchange(value, now);
+    has_last = true;
+    if (now <= target) return inside;
+  }
+  return interval.outside;
+}
+
+/// Returns the linear speed of a part plus its angular speed times its size, m/s.
+inline double speed(const PartModel& m, const VecX<double>& v) {
+  return v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm();
+}
+
+inline Vec3<double> tangential(const Vec3<double>& u, const Contact& contact) {
+  return u - u.dot(contact.normal) * contact.normal;
+}
+
+/// Returns whether a contact can have events: it has friction, and its sides are not at nodes of a mesh.
+inline bool has_events(const Contact& contact) {
+  return contact.friction > 0 && !contact.a.at_nodes() && !contact.b.at_nodes();
+}
+
+}  // namespace friction_events
+
+PLIANT_INLINE FrictionEvents::FrictionEvents(const Dynamics& dynamics, const ContactFinder& finder,
+                                             RestingContacts& resting, const ContactResolution& resolution,
+                                             const Sleeping& sleeping)
+    : dynamics_(dynamics), finder_(finder), resting_(resting), resolution_(resolution), sleeping_(sleeping) {}
+
+PLIANT_INLINE std::optional<double> FrictionEvents::first(const Examined& motion, double tolerance) {
+  find_starts(motion, tolerance);
+  if (starts_.empty()) return std::nullopt;
+  if (work_.parts.empty())
+    dynamics_.accelerations(motion.free.begin, motion.free.before.q, motion.free.before.v, motion.free.before,
+                            work_);
+  if (method_ == nullptr) method_ = make_integrator(motion.method.name());
+  Trial end{motion.free, motion.step.state, motion.contacts, {}};
+  resolve(motion, end, false);
+  drop_short_slides(motion, end);
+  const bool probes = must_probe(motion, end);
+  if (probes) find_directions(motion);
+  const std::optional<double> stopped = stop(motion, end);
+  std::optional<double> slipped;
+  if (probes) slipped = slip(motion, stopped ? *stopped : motion.free.h);
+  const std::optional<double> event = slipped ? slipped : stopped;
+  const double shortest =
+      16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(motion.free.end()), motion.free.h);
+  return event && *event > shortest && *event < motion.free.h - shortest ? event : std::nullopt;
+}
+
+/// Finds the contacts at the start of the motion that can have events, the directions in which they slide,
+/// and the speed up to which they stick.
+PLIANT_INLINE void FrictionEvents::find_starts(const Examined& motion, double tolerance) {
+  starts_.clear();
+  const FreeMotion& free = motion.free;
+  const Model& model = dynamics_.model();
+  double size = std::numeric_limits<double>::infinity(), fastest = 0;
+  for (const Contact& contact : motion.resting) {
+    if (!friction_events::has_events(contact)) continue;
+    const Vec3<double> u = friction_events::tangential(finder_.velocity(free.before, contact), contact);
+    starts_.push_back({key_of(contact), u.norm(), offset(contact, free.before, free.begin), u.normalized()});
+    size = std::min(size, smaller_size(model, contact));
+    fastest = std::max(fastest, contact.prescribed_velocity.norm());
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      if (side->part >= 0 && model.parts()[at(side->part)].q0 >= 0)
+        fastest = std::max(fastest, friction_events::speed(model.parts()[at(side->part)], free.before.v));
+  }
+  short_ = friction_events::kSlowInTolerances * tolerance * size;
+  slow_ = short_ + friction_events::kSlowInResiduals * free.before.contact_residual +
+          friction_events::kSlowInRounding * std::numeric_limits<double>::epsilon() * fastest;
+  for (Start& start : starts_)
+    if (start.speed <= slow_) start.direction.setZero();
+}
+
+/// Regards contacts as sticking from the start if they stick at the end of the motion, and if the distance by
+/// which they slide cannot matter. The extrapolation of a step leaves such speeds.
+PLIANT_INLINE void FrictionEvents::drop_short_slides(const Examined& motion, const Trial& end) {
+  for (const End& e : end.ends)
+    if (starts_[at(e.start)].speed * motion.free.h <= short_ && e.slip.norm() <= slow_)
+      starts_[at(e.start)].direction.setZero();
+}
+
+PLIANT_INLINE Vec3<double> FrictionEvents::offset(const Contact& contact, const State& state,
+                                                  double t) const {
+  return contact.x - dynamics_.model().position(state, contact.a.part, t);
+}
+
+/// Returns the number of the nearest contact of the same pair at the start of the motion; -1: none.
+PLIANT_INLINE int FrictionEvents::start_of(const Contact& contact, const State& state, double t) const {
+  const Vec3<double> x = offset(contact, state, t);
+  int nearest = -1;
+  double distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < starts_.size(); ++i)
+    if (const double d = (starts_[i].offset - x).norm(); starts_[i].pair == key_of(contact) && d < distance) {
+      distance = d;
+      nearest = static_cast<int>(i);
+    }
+  return nearest;
+}
+
+/// Returns the motion of h seconds from a state and a time (s), with its contact impulses. resting: contacts
+/// that rest at its start.
+PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion, const State& from,
+                                                          double begin, double h,
+                                                          const std::vector<Contact>& resting) {
+  Trial result{motion.free, from, {}, {}};
+  set_step(result.state, begin, h);
+  result.free.before = result.state;
+  result.free.begin = begin;
+  result.free.h = h;
+  StepContext step(dynamics_, result.state, work_, motion.step.counters);
+  method_->step(step);
+  sleeping_.restore(result.state);
+  result.contacts = resting_.contacts_after(result.free, resting, result.state);
+  resolve(motion, result, true);
+  return result;
+}
+
+/// Returns the first tau seconds of the motion.
+PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion, double tau) {
+  return trial(motion, motion.free.before, motion.free.begin, tau, motion.resting);
+}
+
+/// Returns a short motion from the end of another motion.
+PLIANT_INLINE FrictionEvents::Trial FrictionEvents::probe(const Examined& motion, const Trial& from) {
+  return trial(motion, from.state, from.free.end(), friction_events::kProbe * motion.free.h, from.contacts);
+}
+
+/// Computes the impulses at the contacts at the end of a motion, and applies them. The start values of the
+/// impulses are those of the step.
+PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, Trial& trial, bool apply) {
+  State& state = trial.state;
+  const FreeMotion& free = trial.free;
+  if (trial.contacts.empty()) return;
+  time_impacts(finder_, free, state, trial.contacts);
+  evaluate_touched(dynamics_, state, free.end(), trial.contacts, work_);
+  ContactProblem problem(dynamics_.model(), state, work_, trial.contacts);
+  const std::vector<Vec3<double>> u_start = problem.velocities(free.before),
+                                  u_free = problem.velocities(state);
+  double fastest = 0;
+  for (const Vec3<double>& u : u_free) fastest = std::max(fastest, u.norm());
+  resolution_.warm_start(motion.free.before, free.end(), free.h, trial.contacts, problem);
+  const ContactSolution solution = problem.solve(free.force_time());
+  for (std::size_t k = 0; k < trial.contacts.size(); ++k) {
+    const Contact& contact = trial.contacts[k];
+    const Vec3<double>& p = solution.impulse[k];
+    const double p_n = p.dot(contact.normal);
+    const int start = start_of(contact, state, free.end());
+    if (start < 0 || !friction_events::has_events(contact) || !(p_n > 0)) continue;
+    trial.ends.push_back({start, friction_events::tangential(solution.velocity[k], contact),
+                          friction_events::tangential(p, contact).norm() / (contact.friction * p_n),
+                          friction_events::tangential(u_start[k], contact).norm() +
+                              slow_ * free.h / motion.free.h + friction_events::kProbeSlip * fastest +
+                              friction_events::kSlowInResiduals * solution.residual});
+  }
+  if (!apply) return;
+  problem.bound_shifts(free.force_time(), free.h);
+  apply_solution(problem, dynamics_.model(), work_, state);
+  StepContext at_end(dynamics_, state, work_, motion.step.counters, free.end(), free.h);
+  resolution_.reconcile(at_end, parts_touched(dynamics_.model(), trial.contacts));
+}
+
+/// Returns whether a contact that sticks at the start of the motion slips at its end, or may begin to slip.
+PLIANT_INLINE bool FrictionEvents::must_probe(const Examined& motion, const Trial& end) {
+  bool slips = false, may_slip = false;
+  for (const End& e : end.ends) {
+    if (starts_[at(e.start)].slides()) continue;
+    slips = slips || e.slip.norm() > slow_;
+    may_slip = may_slip || e.use > friction_events::kSafeUse;
+  }
+  return slips || (may_slip && !are_forces_constant(motion));
+}
+
+/// Returns whether bodies at the contacts were at rest at the start of the motion and the loads on them do
+/// not change: then the forces of contact do not change either.
+PLIANT_INLINE bool FrictionEvents::are_forces_constant(const Examined& motion) {
+  const Model& model = dynamics_.model();
+  const FreeMotion& free = motion.free;
+  const State& before = free.before;
+  if (has_prescribed_motion(model, motion.resting)) return false;
+  const std::vector<int> parts = parts_touched(model, motion.resting);
+  if (std::any_of(parts.begin(), parts.end(),
+                  [&](int i) { return friction_events::speed(model.parts()[at(i)], before.v) > slow_; }))
+    return false;
+  dynamics_.accelerations(free.begin, before.q, before.v, before, work_);
+  const VecX<double> v_dot = work_.v_dot;
+  dynamics_.accelerations(free.begin + friction_events::kSampledLoads * free.h, before.q, before.v, before,
+                          work_);
+  motion.step.counters.evaluations += 2;
+  return (work_.v_dot - v_dot).lpNorm<Eigen::Infinity>() <=
+         friction_events::kEqualLoads * v_dot.lpNorm<Eigen::Infinity>();
+}
+
+/// Finds the contacts that begin to slip at the start of the motion: they slide from the start.
+PLIANT_INLINE void FrictionEvents::find_directions(const Examined& motion) {
+  const Trial begin = trial(motion, friction_events::kProbe * motion.free.h);
+  for (const End& e : begin.ends)
+    if (starts_[at(e.start)].sticks() && e.slip.norm() > e.allowed_slip)
+      starts_[at(e.start)].direction = e.slip.normalized();
+}
+
+/// Returns the least speed of sliding contacts in the directions in which they slid at the start of the
+/// motion, m/s; infinity if no contact slid.
+PLIANT_INLINE double FrictionEvents::least_sliding(const Trial& trial) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const End& e : trial.ends)
+    if (starts_[at(e.start)].slides()) least = std::min(least, starts_[at(e.start)].direction.dot(e.slip));
+  return least;
+}
+
+/// Returns the time from the start of the motion until a sliding contact stops or reverses, s.
+PLIANT_INLINE std::optional<double> FrictionEvents::stop(const Examined& motion, const Trial& end) {
+  auto sliding = [&](double tau) { return least_sliding(trial(motion, tau)); };
+  const double h = motion.free.h, target = 0.5 * slow_;
+  if (least_sliding(end) > target) return std::nullopt;
+  friction_events::Interval interval{0, 0, h};
+  for (int i = 0; i < friction_events::kMaxHalvings; ++i) {
+    const double tau = 0.5 * interval.outside, value = sliding(tau);
+    if (value > target) {
+      interval.inside = tau;
+      interval.value = value;
+      break;
+    }
+    interval.outside = tau;
+  }
+  if (!(interval.value > 0)) return std::nullopt;
+  return friction_events::locate_end(interval, target, friction_events::kTimeTolerance * h, sliding);
+}
+
+/// Returns the largest acceleration with which sticking contacts begin to slip after a trial motion, m/s^2,
+/// or 0.
+PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, const Trial& trial) {
+  const Trial after = probe(motion, trial);
+  double fastest = 0;
+  for (const End& e : after.ends)
+    if (starts_[at(e.start)].sticks() && e.slip.norm() > e.allowed_slip)
+      fastest = std::max(fastest, e.slip.norm() / after.free.h);
+  return fastest;
+}
+
+/// Returns the time from the start of the motion until a sticking contact begins to slip, s, if it does so in
+/// the first `until` seconds.
+PLIANT_INLINE std::optional<double> FrictionEvents::slip(const Examined& motion, double until) {
+  const bool any_stick =
+      std::any_of(starts_.begin(), starts_.end(), [](const Start& s) { return s.sticks(); });
+  if (!any_stick) return std::nullopt;
+  auto acceleration = [&](double tau) { return slip_acceleration(motion, trial(motion, tau)); };
+  const double at_end = acceleration(until);
+  if (!(at_end > 0)) return std::nullopt;
+  return friction_events::locate_end({until, at_end, 0}, friction_events::kSlipTolerance * at_end,
+                                     friction_events::kTimeTolerance * motion.free.h, acceleration);
+}
+
+}  // namespace pliant
