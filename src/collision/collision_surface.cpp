@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "hull/hull.h"
+#include "collision/hull/hull.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>

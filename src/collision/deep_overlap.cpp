@@ -8,8 +8,8 @@
 #include <pliant/collision/ellipsoid_points.h>
 #include <pliant/math/index.h>
 
+#include "collision/hull/hull.h"
 #include "finder_scratch.h"
-#include "hull/hull.h"
 
 namespace pliant {
 

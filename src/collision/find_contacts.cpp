@@ -11,8 +11,8 @@
 #include <pliant/collision/mesh/find_on_mesh.h>
 #include <pliant/math/index.h>
 
+#include "collision/hull/touch_plane.h"
 #include "finder_scratch.h"
-#include "hull/touch_plane.h"
 #include "outline.h"
 
 namespace pliant {

@@ -10,7 +10,7 @@
 #include <pliant/collision/find_contacts.h>
 #include <pliant/collision/mesh/find_on_mesh.h>
 
-#include "hull/hull_pair.h"
+#include "collision/hull/hull_pair.h"
 
 namespace pliant {
 

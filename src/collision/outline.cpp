@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
-#include "hull/polygon.h"
+#include "collision/hull/polygon.h"
 
 namespace pliant {
 

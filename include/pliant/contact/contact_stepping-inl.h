@@ -287,6 +287,7 @@ PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& con
 PLIANT_INLINE void ContactStepping::cut_at_friction_event(Motion& motion, Progress& progress,
                                                           double tolerance) {
   if (!few_parts_ || motion.resting.empty() || motion.contacts.empty()) return;
+  if (motion.predicted.soft || motion.travelled.soft) return;  // trial motions have no contacts at nodes
   const std::optional<double> event = friction_events_.first(
       {progress.method, progress.step, motion.free, motion.resting, motion.contacts}, tolerance);
   progress.clock.lap(times_.resolution);

@@ -107,13 +107,13 @@ PLIANT_INLINE std::optional<double> FrictionEvents::first(const Examined& motion
                             work_);
   if (method_ == nullptr) method_ = make_integrator(motion.method.name());
   Trial end{motion.free, motion.step.state, motion.contacts, {}};
-  resolve(motion, end, false);
+  resolve(motion, motion.resting, end);
   drop_short_slides(motion, end);
   const bool probes = must_probe(motion, end);
   if (probes) find_directions(motion);
   const std::optional<double> stopped = stop(motion, end);
   std::optional<double> slipped;
-  if (probes) slipped = slip(motion, stopped ? *stopped : motion.free.h);
+  if (probes) slipped = slip(motion, stopped ? trial(motion, *stopped) : end);
   const std::optional<double> event = slipped ? slipped : stopped;
   const double shortest =
       16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(motion.free.end()), motion.free.h);
@@ -184,7 +184,7 @@ PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion
   method_->step(step);
   sleeping_.restore(result.state);
   result.contacts = resting_.contacts_after(result.free, resting, result.state);
-  resolve(motion, result, true);
+  resolve(motion, resting, result);
   return result;
 }
 
@@ -198,19 +198,32 @@ PLIANT_INLINE FrictionEvents::Trial FrictionEvents::probe(const Examined& motion
   return trial(motion, from.state, from.free.end(), friction_events::kProbe * motion.free.h, from.contacts);
 }
 
-/// Computes the impulses at the contacts at the end of a motion, and applies them. The start values of the
-/// impulses are those of the step.
-PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, Trial& trial, bool apply) {
+/// Returns the tangential speed of a contact of a trial motion at the start of this motion, m/s. resting: the
+/// contacts at that time; they have the prescribed velocity of that time.
+PLIANT_INLINE double FrictionEvents::slip_before(const FreeMotion& free, const std::vector<Contact>& resting,
+                                                 const Contact& contact) const {
+  Contact before = contact;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const Contact& other : resting)
+    if (const double d = (other.x - contact.x).norm(); key_of(other) == key_of(contact) && d < distance) {
+      distance = d;
+      before.prescribed_velocity = other.prescribed_velocity;
+    }
+  return friction_events::tangential(finder_.velocity(free.before, before), before).norm();
+}
+
+/// Computes the impulses at the contacts at the end of a motion, and applies them. resting: the contacts at
+/// its start. The start values of the impulses are those of the step.
+PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, const std::vector<Contact>& resting,
+                                           Trial& trial) {
   State& state = trial.state;
   const FreeMotion& free = trial.free;
   if (trial.contacts.empty()) return;
   time_impacts(finder_, free, state, trial.contacts);
   evaluate_touched(dynamics_, state, free.end(), trial.contacts, work_);
   ContactProblem problem(dynamics_.model(), state, work_, trial.contacts);
-  const std::vector<Vec3<double>> u_start = problem.velocities(free.before),
-                                  u_free = problem.velocities(state);
   double fastest = 0;
-  for (const Vec3<double>& u : u_free) fastest = std::max(fastest, u.norm());
+  for (const Vec3<double>& u : problem.velocities(state)) fastest = std::max(fastest, u.norm());
   resolution_.warm_start(motion.free.before, free.end(), free.h, trial.contacts, problem);
   const ContactSolution solution = problem.solve(free.force_time());
   for (std::size_t k = 0; k < trial.contacts.size(); ++k) {
@@ -221,11 +234,10 @@ PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, Trial& trial,
     if (start < 0 || !friction_events::has_events(contact) || !(p_n > 0)) continue;
     trial.ends.push_back({start, friction_events::tangential(solution.velocity[k], contact),
                           friction_events::tangential(p, contact).norm() / (contact.friction * p_n),
-                          friction_events::tangential(u_start[k], contact).norm() +
-                              slow_ * free.h / motion.free.h + friction_events::kProbeSlip * fastest +
+                          slip_before(free, resting, contact) + slow_ * free.h / motion.free.h +
+                              friction_events::kProbeSlip * fastest +
                               friction_events::kSlowInResiduals * solution.residual});
   }
-  if (!apply) return;
   problem.bound_shifts(free.force_time(), free.h);
   apply_solution(problem, dynamics_.model(), work_, state);
   StepContext at_end(dynamics_, state, work_, motion.step.counters, free.end(), free.h);
@@ -310,16 +322,16 @@ PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, c
   return fastest;
 }
 
-/// Returns the time from the start of the motion until a sticking contact begins to slip, s, if it does so in
-/// the first `until` seconds.
-PLIANT_INLINE std::optional<double> FrictionEvents::slip(const Examined& motion, double until) {
+/// Returns the time from the start of the motion until a sticking contact begins to slip, s, if it does so
+/// before the end of a trial of the motion.
+PLIANT_INLINE std::optional<double> FrictionEvents::slip(const Examined& motion, const Trial& end) {
   const bool any_stick =
       std::any_of(starts_.begin(), starts_.end(), [](const Start& s) { return s.sticks(); });
   if (!any_stick) return std::nullopt;
-  auto acceleration = [&](double tau) { return slip_acceleration(motion, trial(motion, tau)); };
-  const double at_end = acceleration(until);
+  const double at_end = slip_acceleration(motion, end);
   if (!(at_end > 0)) return std::nullopt;
-  return friction_events::locate_end({until, at_end, 0}, friction_events::kSlipTolerance * at_end,
+  auto acceleration = [&](double tau) { return slip_acceleration(motion, trial(motion, tau)); };
+  return friction_events::locate_end({end.free.h, at_end, 0}, friction_events::kSlipTolerance * at_end,
                                      friction_events::kTimeTolerance * motion.free.h, acceleration);
 }
 

@@ -32,9 +32,10 @@ class FrictionEvents {
     const std::vector<Contact>& resting;   ///< resting contacts at its start
     const std::vector<Contact>& contacts;  ///< contacts at its end
   };
-  /// Returns the time from the start of the motion to the first event of its resting contacts, s; none if
-  /// there is no event before the end of the motion. tolerance: of the simulation; slower sliding than this
-  /// tolerance allows counts as sticking. Contacts at nodes of meshes have no events.
+  /// Returns the time from the start of the motion to the first event of its resting contacts that is found,
+  /// s; none if there is no event before the end of the motion. A contact that stops and slides on in the
+  /// same direction within the motion has no event that is found. tolerance: of the simulation; slower
+  /// sliding than this tolerance allows counts as sticking. Contacts at nodes of meshes have no events.
   std::optional<double> first(const Examined& motion, double tolerance);
 
  private:
@@ -68,7 +69,9 @@ class FrictionEvents {
               const std::vector<Contact>& resting);
   Trial trial(const Examined& motion, double tau);
   Trial probe(const Examined& motion, const Trial& from);
-  void resolve(const Examined& motion, Trial& trial, bool apply);
+  double slip_before(const FreeMotion& free, const std::vector<Contact>& resting,
+                     const Contact& contact) const;
+  void resolve(const Examined& motion, const std::vector<Contact>& resting, Trial& trial);
   int start_of(const Contact& contact, const State& state, double t) const;
   bool must_probe(const Examined& motion, const Trial& end);
   bool are_forces_constant(const Examined& motion);
@@ -76,7 +79,7 @@ class FrictionEvents {
   double least_sliding(const Trial& trial) const;
   double slip_acceleration(const Examined& motion, const Trial& trial);
   std::optional<double> stop(const Examined& motion, const Trial& end);
-  std::optional<double> slip(const Examined& motion, double until);
+  std::optional<double> slip(const Examined& motion, const Trial& end);
   Vec3<double> offset(const Contact& contact, const State& state, double t) const;
 
   const Dynamics& dynamics_;

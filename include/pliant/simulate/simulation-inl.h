@@ -326,7 +326,7 @@ PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
 }
 
 /// Stages 3 and 4: advances the state. Returns the length of the step, s. With a tolerance the step may end
-/// early, at an impact.
+/// early, at an impact or a change of friction.
 PLIANT_INLINE double Simulation::integrate() {
   StepContext step = context();
   if (contact_) return contact_->step(*integrator_, step, scale_ ? scale_->tolerance() : 0);

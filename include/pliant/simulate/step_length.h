@@ -64,7 +64,7 @@ bool take_controlled_step(State& state, double end, double min_length, StepGrowt
       state.start = reaches_end && !cut ? end : now + length;
       state.h = cut           ? h
                 : reaches_end ? std::max(h, next)
-                              : next;  // an impact that cut the step does not change h
+                              : next;  // an event that cut the step does not change h
       state.error = error;
       return true;
     }
