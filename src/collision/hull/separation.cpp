@@ -184,10 +184,14 @@ class Program {
  private:
   /// A further active piece: its row d and right side r, so that d.t = r.
   struct Active {
-    bool of_a;
-    int piece;
-    Eigen::Vector2d d;
-    double r;
+    bool of_a = false;
+    int piece = 0;
+    Eigen::Vector2d d = Eigen::Vector2d::Zero();
+    double r = 0;
+  };
+  struct ActiveSet {
+    std::array<Active, 2> pieces{};
+    int count = 0;
   };
   Active active_a(int base, int i) const {
     const Piece &first = a_.pieces[at(base)], &other = a_.pieces[at(i)];
@@ -201,7 +205,8 @@ class Program {
 
   bool solve_from(int i, int j, int extra, Step& step) {
     const Eigen::Vector2d g = a_.pieces[at(i)].slope - b_.pieces[at(j)].slope;
-    if (extra == 0) return accept(i, j, {}, 0, H_inverse_ * g, {}, step);
+    const Eigen::Vector2d no_multipliers = Eigen::Vector2d::Zero();
+    if (extra == 0) return accept(i, j, ActiveSet{}, H_inverse_ * g, no_multipliers, step);
     std::array<Active, 2 * kMaxPieces> others;
     int n = 0;
     for (int k = i + 1; k < a_.count; ++k) others[at(n++)] = active_a(i, k);
@@ -213,7 +218,7 @@ class Program {
         const double stiffness = one.d.dot(along);
         if (!(stiffness > 0)) continue;
         const double lambda = (one.r - along.dot(g)) / stiffness;
-        if (accept(i, j, {one, one}, 1, H_inverse_ * (g + lambda * one.d), {lambda, 0}, step)) return true;
+        if (accept(i, j, {{one, one}, 1}, H_inverse_ * (g + lambda * one.d), {lambda, 0}, step)) return true;
         continue;
       }
       for (int l = k + 1; l < n; ++l) {
@@ -225,24 +230,24 @@ class Program {
         if (!(std::abs(D.determinant()) > kEqual * scale)) continue;
         const Eigen::Vector2d t = D.inverse() * Eigen::Vector2d(one.r, two.r),
                               lambda = D.transpose().inverse() * (H_ * t - g);
-        if (accept(i, j, {one, two}, 2, t, lambda, step)) return true;
+        if (accept(i, j, {{one, two}, 2}, t, lambda, step)) return true;
       }
     }
     return false;
   }
 
   /// Accepts a step if the multipliers are not negative and no other piece is violated.
-  bool accept(int i, int j, const std::array<Active, 2>& active, int n, const Eigen::Vector2d& t,
-              const Eigen::Vector2d& lambda, Step& step) const {
+  bool accept(int i, int j, const ActiveSet& active, const Eigen::Vector2d& t, const Eigen::Vector2d& lambda,
+              Step& step) const {
     if (!t.allFinite()) return false;
     Step next;
     next.t = t;
     next.of_a[at(i)] = next.of_b[at(j)] = 1;
-    for (int k = 0; k < n; ++k) {
+    for (int k = 0; k < active.count; ++k) {
       if (!(lambda[k] >= -kEqual)) return false;
-      auto& own = active[at(k)].of_a ? next.of_a : next.of_b;
-      own[at(active[at(k)].piece)] += lambda[k];
-      own[at(active[at(k)].of_a ? i : j)] -= lambda[k];
+      auto& own = active.pieces[at(k)].of_a ? next.of_a : next.of_b;
+      own[at(active.pieces[at(k)].piece)] += lambda[k];
+      own[at(active.pieces[at(k)].of_a ? i : j)] -= lambda[k];
     }
     if (!(next.of_a[at(i)] >= -kEqual && next.of_b[at(j)] >= -kEqual)) return false;
     const double alpha = a_.pieces[at(i)].value + a_.pieces[at(i)].slope.dot(t),
