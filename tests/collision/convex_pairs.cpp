@@ -10,21 +10,19 @@
 #include <pliant/part/registry.h>
 
 #include "draws.h"
+#include "solid_kind.h"
 #include "worst.h"
 
 namespace convex_pairs_test {
 
 using namespace pliant;
 using test::Draws;
+using test::random_rotation;
 using test::Worst;
+using Kind = test::SolidKind;
 
 namespace {
 
-struct Kind {
-  const char *name, *shape;
-  std::vector<std::string> chain;
-  Part::Named rest;
-};
 Kind superquadric(const char* name, const char* shape, double eps1, double eps2) {
   return {name, shape, {}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", eps1}, {"eps2", eps2}}};
 }
@@ -49,12 +47,6 @@ const std::vector<Kind>& kinds() {
       {"sheared cylinder", "cylinder", {"shear"}, with("shear.sx", 0.5)},
       {"box", "box", {}, axes}};
   return all;
-}
-
-Eigen::Quaterniond random_rotation(Draws& draws) {
-  return Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(-1, 1),
-                            draws.uniform(-1, 1))
-      .normalized();
 }
 
 /// Two parts. Part a is at the origin, part b at to_b (m).

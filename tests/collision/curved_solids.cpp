@@ -12,22 +12,19 @@
 #include <pliant/part/registry.h>
 
 #include "draws.h"
+#include "solid_kind.h"
 #include "worst.h"
 
 namespace curved_solids_test {
 
 using namespace pliant;
 using test::Draws;
+using test::random_rotation;
 using test::Worst;
+using Kind = test::SolidKind;
 
 namespace {
 
-struct Kind {
-  const char *name, *shape;
-  std::vector<std::string> chain;
-  Part::Named rest;
-  bool is_smooth = false;
-};
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {"tapered ellipsoid",
@@ -86,12 +83,6 @@ const std::vector<Kind>& kinds() {
        {{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.2}, {"bend.angle", 1.2}, {"twist.angle", 1.2}}},
       {"bent box", "box", {"bend"}, {{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.2}, {"bend.angle", 1}}}};
   return all;
-}
-
-Eigen::Quaterniond random_rotation(Draws& draws) {
-  return Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(-1, 1),
-                            draws.uniform(-1, 1))
-      .normalized();
 }
 
 /// Adds a part of a kind. dynamic: with all parameters of its chain and sizes as degrees of freedom.

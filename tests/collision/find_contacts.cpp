@@ -12,19 +12,15 @@
 #include <pliant/part/registry.h>
 
 #include "draws.h"
+#include "solid_kind.h"
 
 namespace find_contacts_test {
 
 using namespace pliant;
 using test::Draws;
+using test::random_rotation;
 
 namespace {
-
-Eigen::Quaterniond random_rotation(Draws& draws) {
-  return Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(-1, 1),
-                            draws.uniform(-1, 1))
-      .normalized();
-}
 
 Part& ellipsoid(MultiBody& body, const char* name, const Vec3<double>& axes, const Vec3<double>& at,
                 const Eigen::Quaterniond& R) {

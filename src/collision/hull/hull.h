@@ -26,7 +26,7 @@ class Hull {
   static bool exists(const Part& part, const ParameterValues<double>& values);
   /// Returns whether a part whose hull exists is its hull.
   static bool is_convex(const Part& part, const ParameterValues<double>& values);
-  /// What is known of a part when its Hull is made.
+  /// Whether the part is known to be convex, or has not been tested.
   enum class Convexity { convex, unknown };
   /// part: its hull exists; it and values must outlive this object. If the convexity is unknown and the chain
   /// is not affine, touching_points() searches from several starts.
