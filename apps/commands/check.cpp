@@ -68,8 +68,8 @@ void print_estimate(pliant::Scene& scene) {
     std::cout << ", about " << pliant::rounded_text(seconds_of_run(simulation, schedule), 2)
               << " s of computation";
   const pliant::Model& model = simulation.model();
-  const std::size_t numbers =
-      1 + static_cast<std::size_t>(model.n_q() + model.n_v()) + pliant::mode_columns_of(model).size();
+  const std::size_t numbers = 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) +
+                              pliant::mode_columns_of(model, simulation.clusters() != nullptr).size();
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
             << (model.body().contact.active ? "at least " : "")
             << pliant::rounded_text(

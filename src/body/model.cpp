@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -26,15 +27,31 @@ constexpr double kMaxJointPairs = 1e7;
 /// iteratively.
 constexpr double kUneven = 1e-4;
 
+std::vector<int> all_parts(const MultiBody& body) {
+  std::vector<int> all(body.parts().size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 }  // namespace
 
-Model::Model(MultiBody& body) : body_(&body) {
+Model::Model(const MultiBody& body) : Model(body, all_parts(body)) {}
+
+Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part_numbers_(std::move(parts)) {
   if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity at time 0 is not finite");
-  for (const auto& part : body.parts()) add_part(*part);
+  for (const int i : part_numbers_) add_part(*body.parts()[static_cast<std::size_t>(i)]);
   add_springs();
   add_forces_and_torques();
   body.stabilization.check();
-  for (const auto& joint : body.joints()) add_joint(*joint);
+  const bool whole = part_numbers_.size() == body.parts().size();
+  for (std::size_t j = 0; j < body.joints().size(); ++j) {
+    const std::vector<Point>& points = body.joints()[j]->points();
+    if (!whole &&
+        std::none_of(points.begin(), points.end(), [&](const Point& p) { return contains(p.part); }))
+      continue;
+    joint_numbers_.push_back(static_cast<int>(j));
+    add_joint(*body.joints()[j]);
+  }
   note_switch_times();
   share_joint_points();
   assign_side_offsets();
@@ -44,6 +61,37 @@ Model::Model(MultiBody& body) : body_(&body) {
   make_rigid_islands();
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i].island < 0) lone_parts_.push_back(static_cast<int>(i));
+}
+
+DisjointSets Model::connected_parts() const {
+  auto has = [&](int part) { return part >= 0 && parts_[static_cast<std::size_t>(part)].q0 >= 0; };
+  DisjointSets sets(parts_.size());
+  for (const Island& island : islands_)
+    for (const int i : island.parts) sets.unite(i, island.parts.front());
+  for (const SpringModel& spring : springs_)
+    if (has(spring.a.part) && has(spring.b.part)) sets.unite(spring.a.part, spring.b.part);
+  for (const TorqueModel& torque : torques_)
+    if (has(torque.part) && has(torque.against)) sets.unite(torque.part, torque.against);
+  return sets;
+}
+
+bool Model::forms_clusters() const {
+  if (!body_->contact.active || has_few_moving_parts()) return false;
+  DisjointSets connected = connected_parts();
+  int sets = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].local != nullptr) return false;
+    if (parts_[i].q0 >= 0 && connected.root(static_cast<int>(i)) == static_cast<int>(i)) ++sets;
+  }
+  return sets > 1;
+}
+
+int Model::number_of(const Part& part) const {
+  const int number = body_->index(part);
+  if (part_numbers_.size() == body_->parts().size()) return number;
+  const auto found = std::lower_bound(part_numbers_.begin(), part_numbers_.end(), number);
+  return found == part_numbers_.end() || *found != number ? -1
+                                                          : static_cast<int>(found - part_numbers_.begin());
 }
 
 void Model::add_part(Part& part) {
@@ -69,6 +117,7 @@ void Model::add_part(Part& part) {
   n_q_ += part.n_q();
   n_v_ += part.n_v();
   n_limits_ += m.n_s;
+  if (!part.fixed()) ++n_moving_;
 
   m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
   for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part.inertia_floor(k);
@@ -84,7 +133,9 @@ void Model::add_part(Part& part) {
 }
 
 void Model::add_springs() {
+  const bool whole = part_numbers_.size() == body_->parts().size();
   for (const auto& spring : body_->springs()) {
+    if (!whole && !contains(spring->a.part) && !contains(spring->b.part)) continue;
     const std::string what = "spring '" + spring->name + "'";
     SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
     if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
@@ -95,6 +146,7 @@ void Model::add_springs() {
 void Model::add_forces_and_torques() {
   for (const auto& force : body_->forces()) {
     if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
+    if (!contains(force->at.part)) continue;
     forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
   }
   for (const auto& torque : body_->torques()) {
@@ -102,8 +154,9 @@ void Model::add_forces_and_torques() {
     if (torque->part == nullptr) throw std::invalid_argument(what + " acts on no part");
     if (torque->against == torque->part)
       throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
-    torques_.push_back({torque.get(), body_->index(*torque->part),
-                        torque->against == nullptr ? -1 : body_->index(*torque->against)});
+    if (!contains(torque->part)) continue;
+    torques_.push_back({torque.get(), number_of(*torque->part),
+                        torque->against == nullptr ? -1 : number_of(*torque->against)});
   }
 }
 
@@ -112,7 +165,7 @@ void Model::note_switch_times() {
     for (const double time : {on, off})
       if (time > 0 && std::isfinite(time)) switch_times_.push_back(time);
   };
-  for (const auto& joint : body_->joints()) note(joint->on(), joint->off());
+  for (const JointModel& joint : joints_) note(joint.joint->on(), joint.joint->off());
   if (body_->contact.active) {
     for (const ContactPlane& plane : body_->contact.planes) note(plane.on, plane.off);
     for (const ContactObstacle& obstacle : body_->contact.obstacles) note(obstacle.on, obstacle.off);
@@ -165,7 +218,7 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   if (!(m.w >= 0 && m.w <= 1) || std::isnan(m.cu.x + m.su.x + m.cv.x + m.sv.x))
     throw std::invalid_argument(what + ": its point on part '" + point.part->name() +
                                 "' needs finite angles, and w from 0 at the centre to 1 on the surface");
-  const int part = body_->index(*point.part);
+  const int part = number_of(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
   const LocalDeformation* local = point.part->local();

@@ -45,6 +45,8 @@ ContactRules::ContactRules(const Model& model)
   check_coefficients(settings.friction, settings.restitution);
   if (!(settings.longest_step > 0) || !std::isfinite(settings.longest_step))
     fail_number("the longest step (s)", settings.longest_step, "a number > 0");
+  if (!(settings.interval > 0) || !std::isfinite(settings.interval))
+    fail_number("the interval of clusters (s)", settings.interval, "a number > 0");
   std::map<std::string, int> numbers;
   auto add = [&](const std::string& name, const char* what) {
     if (!numbers.emplace(name, static_cast<int>(numbers.size())).second)

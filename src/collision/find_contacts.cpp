@@ -32,31 +32,50 @@ constexpr double kMaxExcess = 2;
 ContactFinder::~ContactFinder() = default;
 
 ContactFinder::ContactFinder(const Model& model)
-    : model_(&model),
-      rules_(model),
-      has_pairs_(model.body().contact.between_parts || !model.body().contact.pairs.empty()),
-      scratch_(std::make_unique<Scratch>()) {
-  for (const PartModel& m : model.parts()) {
-    if (m.local == nullptr) smooth_parts_.push_back(static_cast<int>(surfaces_.size()));
-    surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
-  }
-  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
-    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
-      on_planes_.push_back(rules_.on_plane(i, static_cast<int>(k)));
+    : model_(&model), rules_(std::make_shared<ContactRules>(model)) {
+  for (const PartModel& m : model.parts())
+    surfaces_.push_back(m.local == nullptr ? std::make_shared<CollisionSurface>(*m.part) : nullptr);
+  std::vector<ObstacleMesh> meshes;
   for (const ContactObstacle& obstacle : model.body().contact.obstacles) {
     try {
-      obstacles_.emplace_back(obstacle.vertices, obstacle.triangles);
+      meshes.emplace_back(obstacle.vertices, obstacle.triangles);
     } catch (const std::invalid_argument& fault) {
       throw std::invalid_argument("obstacle '" + obstacle.name + "': " + fault.what());
     }
   }
-  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
-    for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      on_obstacles_.push_back(rules_.on_obstacle(i, static_cast<int>(k)));
-  const std::size_t n = model.parts().size();
-  scratch_->parts.resize(n);
-  scratch_->points.resize(n);
-  for (const PartModel& m : model.parts()) scratch_->values.push_back(m.part->parameters().rest());
+  obstacles_ = std::make_shared<const std::vector<ObstacleMesh>>(std::move(meshes));
+  set_up();
+}
+
+ContactFinder::ContactFinder(const Model& model, const ContactFinder& whole)
+    : model_(&model), rules_(whole.rules_), obstacles_(whole.obstacles_) {
+  for (const int i : model.part_numbers()) surfaces_.push_back(whole.surfaces_[at(i)]);
+  set_up();
+}
+
+/// Looks up the rules of the parts with planes and obstacles, and allocates the scratch storage.
+void ContactFinder::set_up() {
+  const ContactSettings& settings = model_->body().contact;
+  has_pairs_ = settings.between_parts || !settings.pairs.empty();
+  scratch_ = std::make_unique<Scratch>();
+  const std::vector<PartModel>& parts = model_->parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].local == nullptr) smooth_parts_.push_back(static_cast<int>(i));
+    const int number = model_->part_numbers()[i];
+    for (std::size_t k = 0; k < settings.planes.size(); ++k)
+      on_planes_.push_back(rules_->on_plane(number, static_cast<int>(k)));
+    for (std::size_t k = 0; k < obstacles_->size(); ++k)
+      on_obstacles_.push_back(rules_->on_obstacle(number, static_cast<int>(k)));
+    scratch_->values.push_back(parts[i].part->parameters().rest());
+  }
+  scratch_->parts.resize(parts.size());
+  scratch_->points.resize(parts.size());
+}
+
+/// Returns the rule of two parts. The rules number the parts as the body does.
+ContactRule ContactFinder::rule_of(int a, int b) const {
+  const std::vector<int>& numbers = model_->part_numbers();
+  return rules_->of_parts(numbers[at(a)], numbers[at(b)]);
 }
 
 void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
@@ -157,8 +176,8 @@ void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double
   const std::size_t first = found.size();
   find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
                 placed.axes, world_box(a), [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
-               obstacles_[number], max_gap, scratch_->mesh_search, found);
-  const ContactRule& rule = on_obstacles_[at(a) * obstacles_.size() + number];
+               (*obstacles_)[number], max_gap, scratch_->mesh_search, found);
+  const ContactRule& rule = on_obstacles_[at(a) * obstacles_->size() + number];
   for (std::size_t k = first; k < found.size(); ++k) {
     found[k].a.part = a;
     found[k].obstacle = static_cast<int>(number);
@@ -214,14 +233,14 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
       if (on_planes_[at(i) * s.planes.size() + k].touch && !at_rest) find_on_plane(i, k, max_gap, found);
     }
     if (asleep) continue;
-    for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, max_gap, found);
+    for (std::size_t k = 0; k < obstacles_->size(); ++k)
+      if (on_obstacles_[at(i) * obstacles_->size() + k].touch) find_on_obstacle(i, k, t, max_gap, found);
   }
   if (!has_pairs_) return found;
   find_near_pairs(max_gap, marked);
   for (const auto& [i, j] : s.pairs) {
     if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
-    const ContactRule rule = rules_.of_parts(i, j);
+    const ContactRule rule = rule_of(i, j);
     if (rule.touch) find_on_pair(i, j, rule, max_gap, found);
   }
   return found;

@@ -11,6 +11,10 @@ bool ContactFinder::has_fixed_shape(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
 }
 
+double ContactFinder::reach(const State& state, int i) const {
+  return surfaces_[at(i)]->reach(has_fixed_shape(i) ? scratch_->values[at(i)] : model_->values(state, i));
+}
+
 void ContactFinder::place(const State& state, double t, int i) const {
   const PartModel& m = model_->parts()[at(i)];
   ParameterValues<double>& values = scratch_->values[at(i)];

@@ -167,7 +167,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
                    allowed_travel = kMaxTravelShare * surfaces_[at(i)]->thickness();
       const bool changes = near.empty || travel + change > allowed_travel;
       if (changes && (!on_obstacles_[at(i) * obstacles.size() + k].touch ||
-                      !obstacles_[k].is_within(ball.c, ball.reach)))
+                      !(*obstacles_)[k].is_within(ball.c, ball.reach)))
         continue;
       near.empty = false;
       near.limit_travel(travel, change, allowed_travel, h, done);
@@ -188,7 +188,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_parts_[at(one)], j = smooth_parts_[at(other)];
     if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
-    if (!rules_.of_parts(i, j).touch) continue;
+    if (!rule_of(i, j).touch) continue;
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;

@@ -149,7 +149,7 @@ void ContactRecordingWriter::append(const Simulation& simulation) {
     add_vector(row, contact.normal);
     row.push_back(contact.gap);
     add_vector(row, record.impulses[k]);
-    add_vector(row, record.impulses[k] / record.h);
+    add_vector(row, record.impulses[k] / record.time[k]);
     row.push_back(record.sliding[k]);
     contacts_.append(row.data());
   }

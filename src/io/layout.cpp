@@ -63,7 +63,7 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   tables[kTimesFile] = json_of(std::vector<Column>{{"t", "s", "time: start + step * step_size"}});
   tables[kCoordinatesFile] = part_columns(model, false);
   tables[kVelocitiesFile] = part_columns(model, true);
-  tables[kModesFile] = json_of(mode_columns_of(model));
+  tables[kModesFile] = json_of(mode_columns_of(model, schedule.step() == 0 && model.forms_clusters()));
   if (model.body().contact.active) {
     tables[kContactCacheFile] = json_of(contact_cache_columns());
     layout["support_rows"] =

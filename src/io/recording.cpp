@@ -22,8 +22,8 @@
 namespace pliant {
 namespace {
 
-int mode_count(const Model& model) {
-  return static_cast<int>(mode_columns_of(model).size());
+int mode_count(const Model& model, bool in_clusters) {
+  return static_cast<int>(mode_columns_of(model, in_clusters).size());
 }
 
 // Throws RecordingMismatch if the column names of a table in layout.json differ from those of the model.
@@ -76,6 +76,19 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
   }
 }
 
+/// Opens modes.npy, with or without columns for clusters.
+NpyReader open_modes(const std::filesystem::path& folder, const Model& model) {
+  const std::filesystem::path path = folder / kModesFile;
+  const int in_clusters = mode_count(model, true);
+  try {
+    NpyReader reader(path);
+    if (model.forms_clusters() && reader.columns() == in_clusters) return reader;
+  } catch (const std::runtime_error&) {
+    // open_table() reports the fault
+  }
+  return open_table(path, mode_count(model, false));
+}
+
 bool has_contact_cache(const Model& model) {
   return model.body().contact.active;
 }
@@ -111,14 +124,15 @@ RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWrit
       modes_(std::move(modes)),
       contact_cache_(std::move(contact_cache)) {}
 
-RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model) {
+RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model,
+                                        bool in_clusters) {
   std::optional<NpyWriter> contact_cache;
   if (has_contact_cache(model))
     contact_cache.emplace(NpyWriter::create(folder / kContactCacheFile, cached_contact_count()));
   return {NpyWriter::create(folder / kTimesFile, kNpyVector),
           NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
           NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-          NpyWriter::create(folder / kModesFile, mode_count(model)), std::move(contact_cache)};
+          NpyWriter::create(folder / kModesFile, mode_count(model, in_clusters)), std::move(contact_cache)};
 }
 
 RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model,
@@ -126,9 +140,7 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
   std::optional<NpyWriter> contact_cache;
   if (has_contact_cache(model)) {
     const std::int64_t end =
-        rows > 0
-            ? cached_contact_rows(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
-            : 0;
+        rows > 0 ? cached_contact_rows(read_row(open_modes(folder, model), rows - 1)).end : 0;
     if (end < 0)
       throw RecordingMismatch((folder / kModesFile).string() + " is damaged at row " +
                               std::to_string(rows - 1));
@@ -137,7 +149,8 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
   return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
           NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
           NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
-          NpyWriter::resume(folder / kModesFile, mode_count(model), rows), std::move(contact_cache)};
+          NpyWriter::resume(folder / kModesFile, open_modes(folder, model).columns(), rows),
+          std::move(contact_cache)};
 }
 
 void RecordingWriter::append(const State& state) {
@@ -168,7 +181,7 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
       coordinates_(
           (compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
-      modes_(open_table(folder / kModesFile, mode_count(model))) {
+      modes_(open_modes(folder, model)) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
   std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
   if (has_contact_cache(model)) {
@@ -203,8 +216,7 @@ State Recording::state(std::int64_t row) const {
   state.v.resize(velocities_.columns());
   coordinates_.read(row, state.q.data());
   velocities_.read(row, state.v.data());
-  if (!read_modes(modes, model_->n_limits(), model_->n_resting(), state) || !(state.time() == time(row)))
-    throw damaged();
+  if (!read_modes(modes, *model_, state) || !(state.time() == time(row))) throw damaged();
   return state;
 }
 

@@ -8,6 +8,9 @@
 namespace pliant {
 namespace {
 
+/// Number of columns of a StepMemory.
+constexpr std::size_t kMemoryColumns = 4;
+
 /// Returns the upper 53 bits of the hash of a state, which a double represents exactly.
 double check_of(const State& state) {
   return static_cast<double>(hash(state) >> 11);
@@ -54,7 +57,7 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
   return columns;
 }
 
-std::vector<Column> mode_columns_of(const Model& model) {
+std::vector<Column> mode_columns_of(const Model& model, bool in_clusters) {
   std::vector<Column> columns{
       {"start", "s", "time of step 0"},
       {"step_size", "s", "length of a step; with error control, of the next step"},
@@ -74,6 +77,13 @@ std::vector<Column> mode_columns_of(const Model& model) {
   if (model.n_resting() > 0)
     for (const PartModel& part : model.parts())
       columns.push_back({"rest." + part.part->name(), "s", "time at rest; negative: the part sleeps"});
+  for (std::size_t i = 0; in_clusters && i < model.parts().size(); ++i) {
+    const std::string& name = model.parts()[i].part->name();
+    columns.push_back({"step_size." + name, "s", "length of the next step of its cluster"});
+    columns.push_back({"error." + name, "1", "error of the last step of its cluster / tolerance"});
+    columns.push_back({"contact_residual." + name, "m/s", "residual of the contact laws in that step"});
+    columns.push_back({"supports_age." + name, "1", "consecutive steps of its cluster with a warm start"});
+  }
   for (const JointModel& joint : model.joints())
     columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
   columns.push_back({"check", "1", "upper 53 bits of a hash of the state"});
@@ -125,23 +135,32 @@ void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::v
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
+  for (const StepMemory& memory : state.step_memory)
+    row.insert(row.end(), {memory.h, memory.error, memory.contact_residual,
+                           static_cast<double>(memory.contact_cache_age)});
   for (const JointMode mode : state.joints) row.push_back(static_cast<double>(mode));
   row.push_back(check_of(state));
 }
 
-bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
+bool read_modes(const std::vector<double>& row, const Model& model, State& state) {
   constexpr std::size_t age = kEndOfCachedContacts + 1, first_work = age + 1,
                         first_limit = first_work + kWorks;
-  const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
-                    first_joint = first_resting + n_resting;
-  if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
+  const std::size_t first_resting = first_limit + static_cast<std::size_t>(model.n_limits()),
+                    first_memory = first_resting + model.n_resting(), n_after = model.joints().size() + 1;
+  if (row.size() < first_memory + n_after) return false;
+  const std::size_t first_joint = row.size() - n_after,
+                    n_memory = (first_joint - first_memory) / kMemoryColumns;
+  if (first_memory + kMemoryColumns * n_memory != first_joint) return false;
+  if (!(std::abs(row[2]) < 0x1p53)) return false;
   state.start = row[0];
   state.h = row[1];
   state.step = static_cast<std::int64_t>(row[2]);
   state.error = row[3];
   state.contact_residual = row[4];
-  if (!(row[age] >= 0 && row[age] < std::numeric_limits<int>::max() && row[age] == std::floor(row[age])))
-    return false;
+  auto is_age = [](double number) {
+    return number >= 0 && number < std::numeric_limits<int>::max() && number == std::floor(number);
+  };
+  if (!is_age(row[age])) return false;
   state.contact_cache_age = static_cast<int>(row[age]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
@@ -150,7 +169,12 @@ bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_rest
     state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
   }
   state.at_rest.assign(row.begin() + static_cast<std::ptrdiff_t>(first_resting),
-                       row.begin() + static_cast<std::ptrdiff_t>(first_joint));
+                       row.begin() + static_cast<std::ptrdiff_t>(first_memory));
+  state.step_memory.clear();
+  for (std::size_t i = first_memory; i < first_joint; i += kMemoryColumns) {
+    if (!is_age(row[i + 3])) return false;
+    state.step_memory.push_back({row[i], row[i + 1], row[i + 2], static_cast<int>(row[i + 3])});
+  }
   state.joints.clear();
   for (std::size_t i = first_joint; i + 1 < row.size(); ++i) {
     if (!(row[i] == 0 || row[i] == 1 || row[i] == 2 || row[i] == 3)) return false;

@@ -214,22 +214,24 @@ TEST_CASE("stiff parameters of a part on a floor are resolved", "[error][contact
   CHECK((exact.q - rough.q).tail<3>().norm() < 1e-4);
 }
 
-TEST_CASE("with many parts in contact the steps are short and counted as uncontrolled", "[error][contact]") {
+TEST_CASE("with many parts that may meet the steps are short and counted as uncontrolled",
+          "[error][contact]") {
   MultiBody body;
   body.contact.active = true;
   body.contact.friction = 0.5;
+  body.contact.interval = 1;  // intervals do not limit the steps
   body.contact.planes.emplace_back().name = "floor";
   for (int i = 0; i < 9; ++i)
     body.add<Primitive<Box>>("box" + std::to_string(i))
         .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
-        .place({0, static_cast<double>(i), 0.1})
+        .place({0, 0.4008 * i, 0.1})
         .velocity({1, 0, 0}, {0, 0, 0});
   Simulation simulation(body, "dop853", 1, 1e-6);
   advance_to(simulation, 0.25);
   CHECK(simulation.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(1e-3));
   CHECK(simulation.state().v.norm() < 1e-9);
-  CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
-  CHECK(simulation.step_counters().steps < 150);
+  CHECK(simulation.step_counters().uncontrolled >= 125);  // steps of at most 2 ms
+  CHECK(simulation.step_counters().uncontrolled < 150);
   const auto steps = [&](double longest) {
     body.contact.longest_step = longest;
     Simulation other(body, "dop853", 1, 1e-6);

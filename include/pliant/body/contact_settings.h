@@ -96,6 +96,9 @@ struct ContactSettings {
   /// the error: with many parts, with parts that deform locally, or with point forces. Must be > 0. Larger
   /// tolerances allow longer steps (contact/longest_contact_step.h).
   double longest_step = 2e-3;
+  /// In a run to a tolerance, bodies that may meet within an interval of this length, s, step together, apart
+  /// from all others (simulate/clusters.h). Intervals end at the multiples of this length. Must be > 0.
+  double interval = 1.0 / 128;
 };
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include <pliant/body/ledger.h>
 #include <pliant/body/multibody.h>
 #include <pliant/body/state.h>
+#include <pliant/math/disjoint_sets.h>
 #include <pliant/solve/block_pattern.h>
 #include <pliant/solve/symmetric_factor.h>
 
@@ -135,9 +136,16 @@ class Model {
  public:
   /// Prepares all parts. Throws std::invalid_argument, naming the part, joint, load or setting at fault.
   /// `body` must outlive the model.
-  explicit Model(MultiBody& body);
+  explicit Model(const MultiBody& body);
+  /// Prepares some parts of a body, with their joints and loads. parts: their numbers in the body,
+  /// increasing. Joints and loads of other parts are left out; no joint or load may connect them with these
+  /// parts.
+  Model(const MultiBody& body, std::vector<int> parts);
 
   const MultiBody& body() const { return *body_; }
+  /// Numbers of the parts, and of the joints, in the body; increasing.
+  const std::vector<int>& part_numbers() const { return part_numbers_; }
+  const std::vector<int>& joint_numbers() const { return joint_numbers_; }
   const std::vector<PartModel>& parts() const { return parts_; }
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
@@ -166,6 +174,14 @@ class Model {
   int n_limits() const { return n_limits_; }
   /// Size of State::at_rest: the number of parts if parts may sleep, else 0.
   std::size_t n_resting() const { return body_->contact.active && body_->contact.sleep ? parts_.size() : 0; }
+
+  /// Whether at most eight parts can move. The impacts of such a model are located in time.
+  bool has_few_moving_parts() const { return n_moving_ <= 8; }
+  /// Whether the parts can step in clusters (simulate/clusters.h): contact is active, more than eight parts
+  /// can move, none deforms locally, and not all of them are connected.
+  bool forms_clusters() const;
+  /// Returns the sets of parts with coordinates that joints, springs and torques connect.
+  DisjointSets connected_parts() const;
 
   /// Returns the state at time 0.
   State initial_state() const;
@@ -210,6 +226,9 @@ class Model {
   /// For each part: the joints on it, each with the number of its side on this part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
 
+  /// Returns the number of a part of the body in this model; -1 if this model does not contain the part.
+  int number_of(const Part& part) const;
+  bool contains(const Part* part) const { return part != nullptr && number_of(*part) >= 0; }
   void add_part(Part& part);
   void add_springs();
   void add_forces_and_torques();
@@ -233,6 +252,7 @@ class Model {
   void make_rigid_islands();
 
   const MultiBody* body_;
+  std::vector<int> part_numbers_, joint_numbers_;
   std::vector<PartModel> parts_;
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
@@ -242,7 +262,7 @@ class Model {
   std::vector<Island> islands_;
   std::vector<double> switch_times_;
   std::vector<RigidIsland> rigid_islands_;
-  int n_q_ = 0, n_v_ = 0, n_limits_ = 0, n_rows_ = 0, n_sides_ = 0;
+  int n_moving_ = 0, n_q_ = 0, n_v_ = 0, n_limits_ = 0, n_rows_ = 0, n_sides_ = 0;
 };
 
 }  // namespace pliant

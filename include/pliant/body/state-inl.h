@@ -60,6 +60,12 @@ PLIANT_INLINE std::uint64_t hash(const State& state) {
     hash.add_each(contact.x);
     hash.add_each(contact.force);
   }
+  for (const StepMemory& memory : state.step_memory) {
+    hash.add(&memory.h, sizeof memory.h);
+    hash.add(&memory.error, sizeof memory.error);
+    hash.add(&memory.contact_residual, sizeof memory.contact_residual);
+    hash.add(&memory.contact_cache_age, sizeof memory.contact_cache_age);
+  }
   return hash.value();
 }
 

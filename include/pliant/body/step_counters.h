@@ -1,6 +1,8 @@
 // Counters of the work that the steps of a simulation did.
 #pragma once
 
+#include <algorithm>
+
 namespace pliant {
 
 struct StepCounters {
@@ -20,6 +22,22 @@ struct StepCounters {
   long contact_cutoffs =
       0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s
+
+  /// Adds counts, and keeps the larger residual.
+  StepCounters& operator+=(const StepCounters& other) {
+    steps += other.steps;
+    evaluations += other.evaluations;
+    rejected += other.rejected;
+    uncontrolled += other.uncontrolled;
+    limit_impulses += other.limit_impulses;
+    factorisations += other.factorisations;
+    impacts += other.impacts;
+    contact_sweeps += other.contact_sweeps;
+    contact_fallbacks += other.contact_fallbacks;
+    contact_cutoffs += other.contact_cutoffs;
+    contact_residual = std::max(contact_residual, other.contact_residual);
+    return *this;
+  }
 };
 
 }  // namespace pliant

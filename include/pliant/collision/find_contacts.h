@@ -23,11 +23,18 @@ class ContactFinder {
   /// model: must outlive this object. Parts that deform locally are left to MeshFinder. Throws
   /// std::invalid_argument as ContactRules and ObstacleMesh do.
   explicit ContactFinder(const Model& model);
+  /// Makes the finder of a model of some parts of the same body. It shares surfaces, rules and obstacles with
+  /// the finder of the whole body, whose model must outlive it.
+  ContactFinder(const Model& model, const ContactFinder& whole);
   ~ContactFinder();
 
   /// Meshes of the obstacles, in the order of the settings. References are valid as long as this object
   /// exists.
-  const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
+  const std::vector<ObstacleMesh>& obstacles() const { return *obstacles_; }
+  /// Whether the rules let two parts touch.
+  bool may_touch(int a, int b) const { return has_pairs_ && rule_of(a, b).touch; }
+  /// Returns the radius of a ball about the origin of a part that contains the part at a state, m.
+  double reach(const State& state, int part) const;
 
   /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). Contacts are left out
   /// if neither side can move, because each side is immobile or sleeps. marked: one entry for each part; if
@@ -85,6 +92,8 @@ class ContactFinder {
   struct Placed;
   struct Scratch;
   class OverPart;
+  void set_up();
+  ContactRule rule_of(int a, int b) const;
   void place(const State& state, double t, int part) const;
   bool has_fixed_shape(int part) const;
   bool uses_hull(int part) const;
@@ -118,10 +127,10 @@ class ContactFinder {
   void find_on_part(int a, int b, const ContactRule& rule, double max_gap, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // nullptr for parts that deform locally
-  ContactRules rules_;
+  std::vector<std::shared_ptr<const CollisionSurface>> surfaces_;  // nullptr for parts that deform locally
+  std::shared_ptr<const ContactRules> rules_;                      // of the whole body
   std::vector<ContactRule> on_planes_;  // index: part * number of planes + plane
-  std::vector<ObstacleMesh> obstacles_;
+  std::shared_ptr<const std::vector<ObstacleMesh>> obstacles_;
   std::vector<ContactRule> on_obstacles_;  // index: part * number of obstacles + obstacle
   bool has_pairs_;                         // whether parts may touch parts
   std::vector<int> smooth_parts_;          // numbers of the parts without local deformation

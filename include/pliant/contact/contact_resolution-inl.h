@@ -73,7 +73,7 @@ PLIANT_INLINE void ContactRecord::clear() {
   impulses.clear();
   sliding.clear();
   joint_impulses.setZero();
-  h = 0;
+  time.clear();
 }
 
 PLIANT_INLINE ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFinder& finder,

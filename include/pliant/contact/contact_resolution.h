@@ -21,7 +21,7 @@ struct ContactRecord {
   std::vector<double> sliding;         ///< tangential speeds after the impulses, m/s
   /// Reactions of all joints to these impulses: lambda, N s; C_q^T lambda acts on the parts.
   VecX<double> joint_impulses;
-  double h = 0;  ///< time in which the impulses act: the length of the step, s
+  std::vector<double> time;  ///< time in which each impulse acts: the length of the step of its bodies, s
 
   void clear();
 };

@@ -24,13 +24,12 @@ namespace contact_stepping {
 /// Rebounds slower than this are left out (FreeMotion::min_impact_speed). Unit: the speed that gravity gives
 /// a body in a step.
 inline constexpr double kMinImpactSpeed = 1e-3;
-/// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up to
-/// the speed that gravity gives a body in a step.
+/// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up
+/// to the speed that gravity gives a body in a step.
 inline constexpr double kResidualFactor = 8;
-/// Impacts are located if at most kMaxLocatedPairs pairs meet in a motion, in models with at most
-/// kMaxLocatedParts moving parts. To locate an impact, the step of all parts is repeated several times.
+/// Impacts are located if at most kMaxLocatedPairs pairs meet in a motion, in models with few moving parts
+/// (Model::has_few_moving_parts). To locate an impact, the step of all parts is repeated several times.
 inline constexpr std::size_t kMaxLocatedPairs = 3;
-inline constexpr std::ptrdiff_t kMaxLocatedParts = 8;
 /// The step fails if a motion in which no part passes through another would be at most 1 / kMaxMotions of the
 /// rest of the step.
 inline constexpr double kMaxMotions = 1e4;
@@ -40,13 +39,17 @@ inline constexpr int kMaxLocatedImpacts = 200;
 /// gap is at most this share of the largest gap of a resting contact.
 inline constexpr double kTouchingGap = 1e-6;
 
+/// With a tolerance, long steps leave small gaps at resting contacts. Residuals count from this speed on, in
+/// the same unit; without a tolerance they count from kMinImpactSpeed on.
+inline constexpr double kMinResidualSpeed = 1e-5;
+
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
 /// m/s. It is rounded down to a power of two, so that it rarely changes and the result of the last contact
-/// search stays valid. It is 0 if it is at most kMinImpactSpeed times gravity_speed. gravity_speed: speed
-/// that gravity gives a body in the step, m/s.
-inline double residual_speed(double residual, double gravity_speed) {
+/// search stays valid. It is 0 if it is at most min_share times gravity_speed. gravity_speed: speed that
+/// gravity gives a body in the step, m/s.
+inline double residual_speed(double residual, double gravity_speed, double min_share) {
   const double speed = std::min(kResidualFactor * residual, gravity_speed);
-  if (!(speed > kMinImpactSpeed * gravity_speed)) return 0;
+  if (!(speed > min_share * gravity_speed)) return 0;
   int exponent = 0;
   std::frexp(speed, &exponent);
   return std::ldexp(1.0, exponent - 1);
@@ -54,9 +57,9 @@ inline double residual_speed(double residual, double gravity_speed) {
 
 }  // namespace contact_stepping
 
-PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics)
+PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics, const ContactFinder* whole)
     : dynamics_(dynamics),
-      finder_(dynamics.model()),
+      finder_(whole == nullptr ? ContactFinder(dynamics.model()) : ContactFinder(dynamics.model(), *whole)),
       meshes_(dynamics.model(), finder_.obstacles()),
       resting_(dynamics.model(), finder_),
       resolution_(dynamics, finder_, meshes_, resting_, record_),
@@ -64,9 +67,7 @@ PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics)
       friction_events_(dynamics, finder_, resting_, resolution_, sleeping_) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
-  few_parts_ =
-      std::count_if(dynamics.model().parts().begin(), dynamics.model().parts().end(),
-                    [](const PartModel& m) { return m.q0 >= 0; }) <= contact_stepping::kMaxLocatedParts;
+  few_parts_ = dynamics.model().has_few_moving_parts();
 }
 
 PLIANT_INLINE void ContactStepping::begin_step() {
@@ -75,6 +76,29 @@ PLIANT_INLINE void ContactStepping::begin_step() {
   at_friction_event_ = false;
   std::swap(record_, record_before_);
   record_.clear();
+  recorded_ = 0;
+}
+
+PLIANT_INLINE void ContactStepping::absorb(ContactStepping& cluster) {
+  const Model &some = cluster.dynamics_.model(), &all = dynamics_.model();
+  const ContactRecord& of_cluster = cluster.record_;
+  for (Contact contact : of_cluster.contacts) {
+    for (ContactSide* side : {&contact.a, &contact.b})
+      if (side->part >= 0) side->part = some.part_numbers()[at(side->part)];
+    record_.contacts.push_back(std::move(contact));
+  }
+  auto append = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+  append(of_cluster.impulses, record_.impulses);
+  append(of_cluster.sliding, record_.sliding);
+  append(of_cluster.time, record_.time);
+  for (std::size_t j = 0; j < some.joints().size(); ++j) {
+    const JointModel &from = some.joints()[j], &to = all.joints()[at(some.joint_numbers()[j])];
+    record_.joint_impulses.segment(to.row, to.rows) += of_cluster.joint_impulses.segment(from.row, from.rows);
+  }
+  const StageTimes times = std::exchange(cluster.times_, {});
+  times_.motion += times.motion;
+  times_.finding += times.finding;
+  times_.resolution += times.resolution;
 }
 
 PLIANT_INLINE void ContactStepping::undo_step() {
@@ -134,7 +158,7 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   State& state = step.state;
   const double start = state.start, h = state.h;
   const std::int64_t number = state.step;
-  Progress progress = begin(method, step);
+  Progress progress = begin(method, step, tolerance);
   double length = h;
   while (!progress.finished()) {
     Motion motion = advance(progress);                                      // 1 predict, 2 advance, 3 detect
@@ -146,7 +170,11 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
     }
     record_resting(motion, tolerance);
     const bool impact = locate_and_apply_impact(motion, progress);  // 5 locate the first impact
-    if (!impact) resolve(motion, progress);                         // 6 resolve, 7 correct
+    if (!impact) {
+      const std::size_t first = record_.contacts.size();
+      resolve(motion, progress);  // 6 resolve, 7 correct
+      if (tolerance > 0 && few_parts_) include_openings(first, progress.now, motion.free.h, state);
+    }
     const bool event =
         impact ? progress.now > progress.begin : !progress.finished() && few_parts_ && has_contact_error();
     if (tolerance > 0 && event) {
@@ -157,18 +185,22 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   state.start = start;
   state.step = number;
   state.h = h;
-  record_.h += length;
+  recorded_ += length;
+  record_.time.assign(record_.contacts.size(), recorded_);
   resolution_.end_step(length, state);
   sleeping_.fall_asleep(record_.contacts, progress.begin, length, state);  // 8 sleep
   return length;
 }
 
-PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& method, StepContext& step) {
+PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& method, StepContext& step,
+                                                               double tolerance) {
   State& state = step.state;
   const double h = state.h, begin = state.time(), end = begin + h;
   const double time_tolerance = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double gravity_speed = dynamics_.model().body().gravity_at(end).norm() * h,
-               residual_speed = contact_stepping::residual_speed(state.contact_residual, gravity_speed),
+               residual_speed = contact_stepping::residual_speed(
+                   state.contact_residual, gravity_speed,
+                   tolerance > 0 ? contact_stepping::kMinResidualSpeed : contact_stepping::kMinImpactSpeed),
                min_impact_speed = contact_stepping::kMinImpactSpeed * gravity_speed,
                max_resting_speed = std::max(min_impact_speed, residual_speed);
   state.contact_residual = 0;

@@ -21,12 +21,21 @@ namespace pliant {
 class ContactStepping {
  public:
   /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder and Sleeping.
-  explicit ContactStepping(const Dynamics& dynamics);
+  explicit ContactStepping(const Dynamics& dynamics) : ContactStepping(dynamics, nullptr) {}
+  /// Makes the stepping of a model of some parts. It shares surfaces with the finder of the whole body, which
+  /// must outlive it.
+  ContactStepping(const Dynamics& dynamics, const ContactFinder& whole) : ContactStepping(dynamics, &whole) {}
 
   /// Begins a step, for which step() may be called several times, with an empty record. undo_step() replaces
   /// the record by that of the step before.
   void begin_step();
   void undo_step();
+  /// Wakes sleeping parts that a force, joint, plane, obstacle or prescribed motion may move within h seconds
+  /// after t, s.
+  void wake_driven(double t, double h, State& state) { sleeping_.begin_motion(t, h, state); }
+  /// Appends the record of the last step of a cluster, a model of some parts of the same body, and moves its
+  /// stage times here.
+  void absorb(ContactStepping& cluster);
   /// Advances q, v, work, modes and contact cache of step.state by state.h seconds, or less with a tolerance.
   /// Returns the length of the step, s. The caller increments State::step. tolerance: that of the simulation,
   /// or 0 if there is none. With a tolerance the step ends at the first event after its start: an impact, or
@@ -69,10 +78,11 @@ class ContactStepping {
   const std::vector<Vec3<double>>& impulses() const { return record_.impulses; }
 
  private:
+  ContactStepping(const Dynamics& dynamics, const ContactFinder* whole);
   class StageClock;
   struct Progress;
   struct Motion;
-  Progress begin(Integrator& method, StepContext& step);
+  Progress begin(Integrator& method, StepContext& step, double tolerance);
   Motion advance(Progress& progress);
   Motion predict(Progress& progress);
   [[noreturn]] void fail_too_fast(const Progress& progress) const;
@@ -107,6 +117,7 @@ class ContactStepping {
   bool agree(const Whole& whole, const Halves& halves, bool has_event, const State& state) const;
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
+  void include_openings(std::size_t first, double t, double h, State& state) const;
   void extrapolate(StepContext& step, const State& whole, std::size_t second);
 
   const Dynamics& dynamics_;
@@ -114,6 +125,7 @@ class ContactStepping {
   MeshFinder meshes_;
   RestingContacts resting_;
   ContactRecord record_, record_before_;
+  double recorded_ = 0;  ///< time since begin_step(), s
   ContactResolution resolution_;
   Sleeping sleeping_;
   FrictionEvents friction_events_;

@@ -234,15 +234,9 @@ PLIANT_INLINE bool Sleeping::is_kinematic(const ContactSide& side, int plane) co
 /// Returns the sets of parts that touch each other or are connected by joints, springs or torques.
 PLIANT_INLINE DisjointSets Sleeping::connected_parts(const std::vector<Contact>& contacts) const {
   auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
-  DisjointSets sets(model_.parts().size());
+  DisjointSets sets = model_.connected_parts();
   for (const Contact& contact : contacts)
     if (has(contact.a.part) && has(contact.b.part)) sets.unite(contact.a.part, contact.b.part);
-  for (const Island& island : model_.islands())
-    for (const int i : island.parts) sets.unite(i, island.parts.front());
-  for (const SpringModel& s : model_.springs())
-    if (has(s.a.part) && has(s.b.part)) sets.unite(s.a.part, s.b.part);
-  for (const TorqueModel& torque : model_.torques())
-    if (has(torque.part) && has(torque.against)) sets.unite(torque.part, torque.against);
   return sets;
 }
 

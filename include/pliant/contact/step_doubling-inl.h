@@ -190,6 +190,21 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halve
   return std::max(end_error, loss_error);
 }
 
+/// Includes in the residual of the state the gaps and the normal speeds of the contacts that have pushed,
+/// from number `first` in the record on. Gaps are not linear in the coordinates, so that the displacement by
+/// the impulses, and extrapolation, leave small gaps. Without them in the residual, the next step would take
+/// these contacts for impacts. t: time of the state, s; h: length of the step, s.
+PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t, double h,
+                                                     State& state) const {
+  for (std::size_t k = first; k < record_.contacts.size(); ++k) {
+    const Contact& contact = record_.contacts[k];
+    if (!(record_.impulses[k].dot(contact.normal) > 0) || contact.rebound > 0) continue;
+    const double opening = finder_.velocity(state, contact).dot(contact.normal),
+                 gap = finder_.min_gap(state, t, contact, smaller_size(dynamics_.model(), contact));
+    state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / h});
+  }
+}
+
 /// Extrapolates the state of the parts in contact, at the end of the two halves, by Richardson. whole: the
 /// state at the end of the whole step. second: number of the first contact of the second half in the record.
 PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second) {
@@ -211,16 +226,8 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
   normalise_rotations(model, state.q);
   resolution_.reconcile(step, parts);
   project_limits(step);
-  // Gaps are not linear in the coordinates. Extrapolation therefore leaves gaps and normal speeds at resting
-  // contacts, which the residual must include.
-  for (std::size_t k = second; k < record_.contacts.size(); ++k) {
-    const Contact& contact = record_.contacts[k];
-    if (!(record_.impulses[k].dot(contact.normal) > 0)) continue;
-    const double opening = finder_.velocity(state, contact).dot(contact.normal),
-                 gap = finder_.min_gap(state, t, contact, smaller_size(model, contact));
-    state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / step.h});
-  }
-  // Energies are not linear in the coordinates and velocities either. Work::contact gets the difference.
+  include_openings(second, t, step.h, state);
+  // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
   state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - work_before);
 }
 

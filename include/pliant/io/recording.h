@@ -33,7 +33,8 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
 class RecordingWriter {
  public:
   /// Creates new tables. Throws std::system_error if a table exists.
-  static RecordingWriter create(const std::filesystem::path& folder, const Model& model);
+  static RecordingWriter create(const std::filesystem::path& folder, const Model& model,
+                                bool in_clusters = false);
   /// Opens the tables in a folder and removes all states after the first `rows` states.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 

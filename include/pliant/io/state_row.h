@@ -16,8 +16,9 @@ namespace pliant {
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part);
 /// Returns the columns of a moving part in v.npy, in order.
 std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
-/// Returns the columns of modes.npy, in order.
-std::vector<Column> mode_columns_of(const Model& model);
+/// Returns the columns of modes.npy, in order. in_clusters: whether the parts step in clusters
+/// (simulate/clusters.h); there are then columns for State::step_memory.
+std::vector<Column> mode_columns_of(const Model& model, bool in_clusters);
 
 /// Numbers of the two columns of modes.npy that give the rows of a state in supports.npy: its first row, and
 /// one past its last row.
@@ -33,10 +34,8 @@ std::vector<double> cached_contact_row(const CachedContact& contact);
 /// supports.npy. The last number of the row is a hash of all bits of the state.
 void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row);
 
-/// Completes a state whose q, v and contact cache are set, from its row of modes.npy. n_limits: number of
-/// limit flags of the model; n_resting: number of parts with a time at rest. Returns false if the row is
-/// damaged or its hash differs from that of the state.
-[[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting,
-                              State& state);
+/// Completes a state of the model whose q, v and contact cache are set, from its row of modes.npy. Returns
+/// false if the row is damaged or its hash differs from that of the state.
+[[nodiscard]] bool read_modes(const std::vector<double>& row, const Model& model, State& state);
 
 }  // namespace pliant

@@ -29,6 +29,7 @@
 #include <pliant/math/header_only.h>
 #include <pliant/project/project.h>
 #include <pliant/simulate/choose_integrator.h>
+#include <pliant/simulate/clusters.h>
 #include <pliant/simulate/failure_report.h>
 #include <pliant/simulate/predicted_conflict.h>
 #include <pliant/simulate/step_length.h>
@@ -121,6 +122,21 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
     start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
   });
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
+  if (!scale_ || !model_.forms_clusters()) return;
+  clusters_ = std::make_unique<Clusters>(*this);
+  state_.step_memory.resize(model_.parts().size());
+}
+
+PLIANT_INLINE Simulation::Simulation(const Simulation& whole, const std::vector<int>& parts)
+    : model_(whole.model_.body(), parts),
+      dynamics_(model_),
+      switching_(dynamics_),
+      contact_(std::make_unique<ContactStepping>(dynamics_, whole.contact_->finder())),
+      state_(model_.initial_state()),
+      without_inertia_(static_cast<std::size_t>(model_.n_v())) {
+  if (whole.scale_) scale_.emplace(model_, whole.scale_->tolerance());
+  dynamics_.set_joint_policy(whole.dynamics_.joint_policy());
+  set_method(make_integrator(whole.integrator_->name()));
 }
 
 PLIANT_INLINE Simulation::~Simulation() = default;
@@ -214,25 +230,64 @@ PLIANT_INLINE void Simulation::step_up_to(double until) {
   begin_step();
   switch_joints(now, min_step);
   state_.start = switching_.after_kink(now, min_step);
-  const int order = integrator_->error_order();
-  if (!(state_.h > 0)) {
-    StepContext begin = context();
-    state_.h = first_step(begin, *scale_, order);
-  }
   // A step that ends shortly before `end` is extended to `end`, at most by this factor.
   constexpr double max_extension = 1.1;
-  const Kink kink =
-      model_.next_kink(now + min_step, std::min(end, now + max_extension * state_.h) + min_step);
+  const double longest = clusters_      ? clusters_->end_of_interval(state_.start) - now
+                         : state_.h > 0 ? max_extension * state_.h
+                                        : end - now,
+               last = std::min(end, now + longest);
+  const Kink kink = model_.next_kink(now + min_step, last + min_step);
   const bool has_kink = std::isfinite(kink.time);
-  const double stop = has_kink ? just_before(kink.time) : end;
-  const bool done = take_controlled_step(state_, stop, min_step, growth_of(*integrator_, model_),
-                                         step_counters_, [&] { return try_step(); });
-  if (!done) with_rollback(state_.h, [&] { fail_to_meet_tolerance(); });
+  const double stop = has_kink ? just_before(kink.time) : clusters_ ? last : end;
+  if (clusters_)
+    advance_clusters(stop);
+  else
+    controlled_step(stop);
   const bool at_kink = has_kink && state_.start >= stop;
   if (at_kink) state_.start = std::min(kink.time, end);
   switch_joints(at_kink ? just_after(kink.time) : state_.start, min_step);
   if (at_kink) with_rollback(state_.h, [&] { follow_paths(kink.time, min_step); });
   end_step();
+}
+
+/// Stages 3 to 5 with a tolerance: one step of the length that the tolerance allows, to the time `end` (s) at
+/// the latest.
+PLIANT_INLINE void Simulation::controlled_step(double end) {
+  if (!(state_.h > 0)) {
+    StepContext begin = context();
+    state_.h = first_step(begin, *scale_, integrator_->error_order());
+  }
+  const double min_step = simulation::kMinStep * std::max(std::abs(time()), std::abs(end));
+  const bool done = take_controlled_step(state_, end, min_step, growth_of(*integrator_, model_),
+                                         step_counters_, [&] { return try_step(); });
+  if (!done) with_rollback(state_.h, [&] { fail_to_meet_tolerance(); });
+}
+
+/// Stages 3 to 5 with a tolerance: advances all clusters to the time `end`, s.
+PLIANT_INLINE void Simulation::advance_clusters(double end) {
+  contact_->begin_step();
+  try {
+    clusters_->advance(end);
+  } catch (...) {
+    reject_step();
+    throw;
+  }
+}
+
+/// Adds the counters of a cluster, and its velocities without inertia.
+PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
+  const StepCounters counted = std::exchange(cluster.step_counters_, {});
+  step_counters_ += counted;
+  for (PartWorkspace<double>& w : cluster.work_.parts) absorbed_counters_ += std::exchange(w.counters, {});
+  for (RigidWorkspace& w : cluster.work_.rigid) absorbed_counters_ += std::exchange(w.counters, {});
+  for (std::size_t i = 0; i < cluster.work_.without_inertia.size(); ++i) {
+    if (cluster.work_.without_inertia[i] == 0) continue;
+    const PartModel &from = cluster.model_.parts()[i],
+                    &to = model_.parts()[static_cast<std::size_t>(cluster.model_.part_numbers()[i])];
+    for (int k = 0; k < 6 + from.n_s; ++k)
+      if (cluster.without_inertia_[static_cast<std::size_t>(from.v0 + k)])
+        without_inertia_[static_cast<std::size_t>(to.v0 + k)] = true;
+  }
 }
 
 PLIANT_INLINE void Simulation::reject_step() {
@@ -279,7 +334,7 @@ PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& r
   const bool may_double = contact_->may_double();
   // The work of point forces on resting bodies is computed for a motion that the contacts prevent. Short
   // steps limit the error of this work.
-  if (!may_double || !model_.body().forces().empty()) {
+  if (!may_double || !model_.forces().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
     if (!may_double || share > 1) {
       result.order = 0;
@@ -439,11 +494,15 @@ PLIANT_INLINE std::set<std::string> Simulation::velocities_without_inertia() con
 PLIANT_INLINE void Simulation::set_state(State state) {
   if (state.q.size() != model_.n_q() || state.v.size() != model_.n_v() ||
       static_cast<int>(state.at_limit.size()) != model_.n_limits() ||
-      state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting())
+      state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting() ||
+      (!state.step_memory.empty() && state.step_memory.size() != model_.parts().size()))
     throw std::invalid_argument("this state belongs to another model");
   if (!contact_) state.contact_cache.clear();
   simulation::check_contact_cache(state, model_);
   if (state.contact_cache.empty()) state.contact_cache_age = 0;
+  if (!clusters_) state.step_memory.clear();
+  if (clusters_ && state.step_memory.empty())
+    state.step_memory.assign(model_.parts().size(), {0, 0, state.contact_residual, state.contact_cache_age});
   state_ = std::move(state);
   switching_.forget_after(time() + simulation::kNear * state_.h);
   if (contact_) contact_->begin_step();  // no contacts yet
@@ -456,7 +515,7 @@ PLIANT_INLINE Ledger Simulation::ledger() {
 }
 
 PLIANT_INLINE Counters Simulation::counters() const {
-  Counters sum;
+  Counters sum = absorbed_counters_;
   for (const PartWorkspace<double>& w : work_.parts) sum += w.counters;
   for (const RigidWorkspace& w : work_.rigid) sum += w.counters;
   return sum;

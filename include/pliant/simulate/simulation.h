@@ -18,6 +18,7 @@
 
 namespace pliant {
 
+class Clusters;         // simulate/clusters.h
 class ContactStepping;  // contact/contact_stepping.h
 
 class Simulation {
@@ -43,9 +44,9 @@ class Simulation {
   /// and NumericalFailure or UnsatisfiableModel if a step fails; the state is then that before the failed
   /// step.
   void step(double h);
-  /// Advances by one step of the length that the tolerance allows. The step ends at the time `until` (s) at
-  /// the latest. Throws std::invalid_argument unless `until` is finite and later than time(),
-  /// std::logic_error without a tolerance, and the errors of step() if the step fails.
+  /// Advances by one step of the length that the tolerance allows, or by one interval of the clusters. The
+  /// step ends at the time `until` (s) at the latest. Throws std::invalid_argument unless `until` is finite
+  /// and later than time(), std::logic_error without a tolerance, and the errors of step() if the step fails.
   void step_up_to(double until);
 
   const Model& model() const { return model_; }
@@ -72,6 +73,8 @@ class Simulation {
   const AssemblyReport& assembly() const { return assembly_; }
   /// Returns the contacts (contact/contact_stepping.h); nullptr if contact is not active in the body.
   const ContactStepping* contact() const { return contact_.get(); }
+  /// Returns the clusters (simulate/clusters.h); nullptr if all parts step together.
+  const Clusters* clusters() const { return clusters_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
   /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
   /// the order of time. Impulses as small as rounding errors are omitted.
@@ -83,10 +86,16 @@ class Simulation {
   std::set<std::string> velocities_without_inertia() const;
 
  private:
+  friend class Clusters;
+  /// Makes the simulation of a cluster: some parts of the body of another simulation, which must outlive it.
+  Simulation(const Simulation& whole, const std::vector<int>& parts);
   template <class Advance>
   void with_rollback(double h, Advance&& step);
   void advance(double h);
   double integrate();
+  void controlled_step(double end);
+  void advance_clusters(double end);
+  void absorb(Simulation& cluster);
   void set_method(std::unique_ptr<Integrator> method);
   StepError try_step();
   void estimate_contact_error(long impacts, StepError& result);
@@ -109,11 +118,13 @@ class Simulation {
   std::optional<ErrorScale> scale_;  ///< only with a tolerance
   IntegratorChoice choice_;
   std::unique_ptr<ContactStepping> contact_;  ///< nullptr if contact is not active
+  std::unique_ptr<Clusters> clusters_;        ///< nullptr if all parts step together
   State state_, last_good_, attempt_start_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
   std::vector<bool> without_inertia_;  ///< whether each velocity had no inertia in at least one step
+  Counters absorbed_counters_;         ///< evaluations of clusters
   double start_energy_ = 0;
 };
 

@@ -174,7 +174,8 @@ void Run::begin_recording() {
               {{name, scene_->obstacles[i].color, node_mesh(mesh.triangles, mesh.vertices)}});
     record_.add_file(file);
   }
-  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::create(folder_->path(), simulation_->model()));
+  writer_ = std::make_unique<RecordingWriter>(
+      RecordingWriter::create(folder_->path(), simulation_->model(), simulation_->clusters() != nullptr));
   if (scene_->contacts)
     contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(folder_->path()));
   record_state();

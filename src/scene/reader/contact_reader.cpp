@@ -75,10 +75,15 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
        optional(
            "longest_step", number(above(0), "s"),
            "Longest step with a \"tolerance\" in lasting contact. It applies if the scene has \"forces\", "
-           "if more than eight bodies move, or if a body deforms locally. In the last two cases the error "
+           "if more than eight moving bodies may meet each other, or if a body deforms locally. In the last "
+           "two cases the error "
            "of these contacts is not controlled. For tolerances above 5e-4 the longest step grows in "
            "proportion, up to ten times.",
            "0.002"),
+       optional("interval", number(above(0), "s"),
+                "With a \"tolerance\", bodies that may meet within an interval of this length step together, "
+                "apart from all others. Fast or small scenes need a shorter interval.",
+                "0.0078125"),
        optional("sleep", record(sleep_record()), "Sleep of bodies at rest; when absent, no body sleeps."),
        optional("planes", array(record(plane_record(color))), "Impenetrable planes.", "[]"),
        optional("obstacles", array(record(obstacle_record(orientation, color))),
@@ -179,6 +184,7 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   settings.restitution = contact.number("restitution");
   settings.between_parts = contact.boolean("between_parts");
   settings.longest_step = contact.number("longest_step");
+  settings.interval = contact.number("interval");
   if (contact.given("sleep")) {
     const Reader sleep = contact.object("sleep");
     if (sleep.complete()) settings.sleep = Sleep{sleep.number("speed"), sleep.number("after")};

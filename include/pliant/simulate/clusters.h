@@ -1,0 +1,80 @@
+// Clusters: sets of bodies that may meet within an interval, in a simulation with a tolerance. Each cluster
+// steps alone, as a simulation of its parts, with its own step lengths, impact times and sleep (README.md of
+// this folder).
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <pliant/body/state.h>
+#include <pliant/collision/box_tree.h>
+#include <pliant/math/disjoint_sets.h>
+
+namespace pliant {
+
+class Model;
+class Simulation;  // simulate/simulation.h
+
+class Clusters {
+ public:
+  /// Advances the state of this simulation, which must outlive the object. It has contact and a tolerance.
+  explicit Clusters(Simulation& whole);
+  ~Clusters();
+
+  /// Returns the end of the interval of a time t (s): the first multiple of ContactSettings::interval after
+  /// t.
+  double end_of_interval(double t) const;
+  /// Advances the state from its time to `end`, s. Each cluster takes as many steps as it needs. Throws the
+  /// failures of a step; the state is then undefined.
+  void advance(double end);
+
+  /// Returns the parts of each cluster of the last advance, increasing. Parts that cannot move are included
+  /// if the cluster may reach them.
+  std::vector<std::vector<int>> parts() const;
+
+ private:
+  struct Cluster {
+    std::vector<int> parts;  ///< numbers in the whole model, increasing
+    Simulation* simulation = nullptr;
+    bool done = false;  ///< whether it has been simulated to the end of the interval
+  };
+  /// The simulation of a set of parts, kept for later intervals.
+  struct Kept {
+    std::vector<int> parts;
+    std::unique_ptr<Simulation> simulation;
+    long last_use = 0;
+  };
+
+  void find_anchors();
+  void predict_travel(double end);
+  void join_parts_that_meet();
+  void join(int i, int j);
+  bool can_meet(int i, int j);
+  void divide();
+  Kept& kept(const std::vector<int>& parts);
+  bool simulate(Cluster& cluster, double end);
+  bool include_path(const Simulation& of, const State& before, double h);
+  void commit(double end);
+
+  Simulation& whole_;
+  std::vector<std::vector<Kept>> kept_;  ///< by the number of the first part
+  const DisjointSets connected_;         ///< parts that joints, springs and torques connect
+  std::vector<std::pair<int, int>>
+      anchors_;  ///< moving parts, each with a part without coordinates at a joint or load
+  long intervals_ = 0;
+  // Of the present interval:
+  DisjointSets sets_;                       ///< connected parts, and parts that can meet
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< a box for each part that contains it all the time, m
+  /// Of each part: bound of the distance of any of its points from the place at the start, and the part of it
+  /// that rotation and deformation cause, m.
+  std::vector<double> travel_, turned_;
+  std::vector<std::pair<int, int>> pairs_, reached_;  ///< pairs of boxes that meet; (moving, immobile) parts
+  std::vector<int> cluster_of_;  ///< number of the cluster of each set, by its first part
+  BoxTree tree_;
+  std::vector<Cluster> clusters_;
+};
+
+}  // namespace pliant
