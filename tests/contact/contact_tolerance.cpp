@@ -1,0 +1,110 @@
+// The tolerance of contact (ContactSettings::tolerance): violations of the laws of contact and remaining
+// overlaps are within it, errors follow it, and looser tolerances need fewer iterations.
+#include "catch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <pliant/contact/contact_stepping.h>
+
+#include "motion.h"
+
+namespace contact_tolerance_test {
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kHalf = 0.1, kStep = 2e-3;  // m, s
+
+/// Adds a pyramid of boxes on a floor that accelerates so slowly that no box slides.
+void pyramid(MultiBody& body, int rows) {
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < rows - row; ++k)
+      body.add(make_part("box" + std::to_string(row) + "_" + std::to_string(k), "box", {}, 1000))
+          .rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}})
+          .place({kHalf * (2.1 * k + 1.05 * row), 0, kHalf * (2 * row + 1)});
+  body.plane("floor", TimeVector(TimeFunction::formula("0.5 * t^2"), 0, 0), {0, 0, 1});
+  body.contact.friction = 0.6;
+}
+
+struct Outcome {
+  VecX<double> q;
+  StepCounters counters;
+};
+
+Outcome outcome(const std::optional<double>& tolerance) {
+  MultiBody body;
+  pyramid(body, 6);
+  body.contact.tolerance = tolerance;
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.2, 100);
+  return {simulation.state().q, simulation.step_counters()};
+}
+
+}  // namespace
+
+TEST_CASE("errors of contact follow the tolerance of contact, and looser tolerances cost less", "[contact]") {
+  const Outcome exact = outcome(std::nullopt);
+  const double fall = 9.81 * kStep;  // speed that gravity gives a body in a step, m/s
+  CHECK(exact.counters.worst_residual.is_allowed());
+  double last_error = std::numeric_limits<double>::infinity();
+  for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    CAPTURE(tolerance);
+    const Outcome rough = outcome(tolerance);
+    CHECK(rough.counters.worst_residual.is_allowed());
+    CHECK(rough.counters.worst_overlap.is_allowed());
+    CHECK(rough.counters.contact_residual <= 1.1 * tolerance * fall);
+    CHECK(rough.counters.contact_overlap <= 1e-3 * tolerance * kHalf + 1e-10);
+    CHECK(rough.counters.contact_sweeps < exact.counters.contact_sweeps);
+    const double error = (rough.q - exact.q).lpNorm<Eigen::Infinity>();
+    CHECK(error < tolerance * kHalf);
+    CHECK(error < 0.5 * last_error);
+    last_error = error;
+  }
+  CHECK(10 * outcome(1e-2).counters.contact_sweeps < 8 * exact.counters.contact_sweeps);
+}
+
+TEST_CASE("a tolerance of contact that is out of range is refused", "[contact]") {
+  for (const double tolerance : {0.0, -1e-3, 1e-15, 0.11, std::numeric_limits<double>::quiet_NaN(),
+                                 std::numeric_limits<double>::infinity()}) {
+    CAPTURE(tolerance);
+    MultiBody body;
+    pyramid(body, 1);
+    body.contact.tolerance = tolerance;
+    CHECK_THROWS_WITH(Simulation(body, "rk4"),
+                      Catch::Contains("contact: the tolerance is") && Catch::Contains("from 1e-14 to 0.1"));
+  }
+}
+
+TEST_CASE("a violation that no impulse prevents exceeds the tolerance, and its time is recorded",
+          "[contact]") {
+  // A joint presses a ball through the floor with a constant speed from the time 0.2 s on.
+  for (const std::optional<double>& tolerance : {std::optional<double>(), std::optional<double>(1e-5)}) {
+    MultiBody body;
+    body.contact.tolerance = tolerance;
+    Part& ball = body.add(make_part("ball", "sphere", {}, 1000));
+    ball.rest({{"r", kHalf}}).place({0, 0, 2 * kHalf});
+    body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+    body.ball("pull", point(ball, 0, 0, 0), world(TimeVector(0, 0, TimeFunction::formula("0.2 - 0.5 * t"))));
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.3, 150);
+    const StepCounters& counters = simulation.step_counters();
+    CHECK(counters.contact_residual == Approx(0.5));
+    CHECK(counters.contact_overlap == Approx(0.05).margin(1e-3));
+    CHECK_FALSE(counters.worst_residual.is_allowed());
+    CHECK(counters.worst_residual.value == Approx(0.5));
+    CHECK(counters.worst_residual.tolerance == Approx(0.5 * tolerance.value_or(1e-3)));
+    CHECK(counters.worst_residual.time == Approx(0.2).margin(2 * kStep));
+    CHECK_FALSE(counters.worst_overlap.is_allowed());
+    CHECK(counters.worst_overlap.value == Approx(0.05).margin(1e-3));
+    CHECK(counters.worst_overlap.time == Approx(0.3));
+  }
+}
+
+}  // namespace contact_tolerance_test
