@@ -199,10 +199,10 @@ PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedM
   resolve_once(step, motion, std::move(contacts), motion.h > 0);
 }
 
-/// Sets the travel of each part towards the bodies that it meets in a motion of h seconds.
+/// Adds to the travel of each part its travel towards the bodies that it meets in a motion of h seconds.
 PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double h,
                                                      const std::vector<Contact>& contacts) {
-  travel_.assign(dynamics_.model().parts().size(), 0);
+  travel_.resize(dynamics_.model().parts().size(), 0);
   for (const Contact& contact : contacts) {
     const double opening = finder_.velocity(state, contact).dot(contact.normal);
     extend_travel(contact, h * std::max(0.0, -opening) +
@@ -289,6 +289,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
     state.work[static_cast<int>(driven ? Work::anchors : Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
   append_to_record(contacts, solution);
+  if (motion.separates) travel_.clear();
 }
 
 PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vector<Contact> resolved,

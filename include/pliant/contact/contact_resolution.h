@@ -109,8 +109,8 @@ class ContactResolution {
   std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // Travel of each part, m: the distance towards the bodies that it meets, plus its displacements by impulses
-  // (ejections).
+  // Travel of each part since the last separation, m: the distance towards the bodies that it meets, plus its
+  // displacements by impulses (ejections).
   std::vector<double> travel_;
   VecX<double> q_before_ejection_;
   // Pairs whose overlap was too deep to be separated in one step, and that have been separated by the allowed

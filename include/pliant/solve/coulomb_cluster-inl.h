@@ -81,7 +81,8 @@ PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number,
       has_point_masses_ = has_point_masses_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
 }
 
-/// Computes scale_, approach_, exact_ and acceptable_. The present velocities must be those without impulses.
+/// Computes scale_, approach_, rounding_, exact_ and acceptable_. The present velocities must be those
+/// without impulses.
 PLIANT_INLINE void CoulombCluster::set_scale() {
   double terms = 0;
   scale_ = approach_ = 0;
@@ -97,9 +98,10 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
     }
   }
   const bool rough = has_point_masses_ && !tolerance_.share;
-  exact_ = std::max({(rough ? detail::kSweepExactOfPointMasses : detail::kSweepExact) * scale_,
-                     detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, tolerance_.velocity,
-                     tolerance_.share.value_or(0) * approach_});
+  rounding_ =
+      std::max({(rough ? detail::kSweepExactOfPointMasses : detail::kSweepExact) * scale_,
+                detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, tolerance_.velocity});
+  exact_ = std::max(rounding_, tolerance_.share.value_or(0) * approach_);
   acceptable_ =
       std::max(exact_, (has_point_masses_ || size_ > detail::kManyContacts ? detail::kAcceptableOfManyContacts
                                                                            : detail::kAcceptableResidual) *
@@ -148,14 +150,16 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   }
 }
 
-/// Returns exact_, or the rounding error of the present impulses as a velocity if that is larger, but at most
-/// acceptable_. This rounding error is large where a light part supports a heavy one.
-PLIANT_INLINE double CoulombCluster::exact_level() const {
+/// Returns exact_ (to_rounding: rounding_), or the rounding error of the present impulses as a velocity if
+/// that is larger, but at most acceptable_. This rounding error is large where a light part supports a heavy
+/// one.
+PLIANT_INLINE double CoulombCluster::exact_level(bool to_rounding) const {
   double largest = 0;
   for (int i = 0; i < size_; ++i)
     largest = std::max(largest, contact(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
   return std::max(
-      exact_, std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
+      to_rounding ? rounding_ : exact_,
+      std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
 }
 
 /// Solves the law of each contact once, in ascending (forward) or descending order. Returns the largest

@@ -85,7 +85,7 @@ class CoulombCluster {
   Vec3<double> velocity(int i) const;
   Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
   void add_impulse(int i, const Vec3<double>& dp);
-  double exact_level() const;
+  double exact_level(bool to_rounding = false) const;
   void record(double residual, CoulombResult& result) const;
   double sweep(bool forward);
   double residual() const;
@@ -110,9 +110,10 @@ class CoulombCluster {
   bool has_point_masses_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
   double scale_ = 0;               // the largest contact velocity without impulses
   double approach_ = 0;            // the approach speed (CoulombTolerance)
-  double exact_ = 0;               // residuals up to this velocity are rounding
-  double acceptable_ = 0;          // residuals up to this velocity are acceptable
-  double compliance_ = 0;          // compliance of all contacts, as a fraction of the diagonal of W
+  double rounding_ = 0;    // residuals up to this velocity are rounding, or CoulombTolerance::velocity
+  double exact_ = 0;       // residuals up to this velocity are within the tolerance
+  double acceptable_ = 0;  // residuals up to this velocity are acceptable
+  double compliance_ = 0;  // compliance of all contacts, as a fraction of the diagonal of W
 };
 
 }  // namespace pliant
