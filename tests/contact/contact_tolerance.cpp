@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kHalf = 0.1, kStep = 2e-3;  // m, s
 
-/// Adds a pyramid of boxes, or of balls that touch, on a floor. All fall with 1 m/s.
-void pyramid(MultiBody& body, int rows, const char* shape) {
+/// Adds a pyramid of boxes, or of balls that touch, on a floor. speed: of all, downwards, m/s.
+void pyramid(MultiBody& body, int rows, const char* shape, double speed = 1) {
   const bool balls = std::string(shape) == "sphere";
   const double apart = balls ? 2 : 2.1, above = balls ? std::sqrt(3.0) : 2;  // in half sizes
   for (int row = 0; row < rows; ++row)
@@ -34,7 +34,7 @@ void pyramid(MultiBody& body, int rows, const char* shape) {
       else
         part.rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}});
       part.place({kHalf * apart * (k + 0.5 * row), 0, kHalf * (above * row + 1)});
-      part.velocity({0, 0, -1}, {0, 0, 0});
+      part.velocity({0, 0, -speed}, {0, 0, 0});
     }
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   body.contact.friction = 0.6;
@@ -79,6 +79,21 @@ TEST_CASE("errors of contact follow the tolerance of contact", "[contact]") {
 TEST_CASE("looser tolerances of contact need fewer sweeps", "[contact]") {
   const long exact = outcome("sphere", std::nullopt).counters.contact_sweeps;
   CHECK(2 * outcome("sphere", 1e-2).counters.contact_sweeps < exact);
+}
+
+TEST_CASE("with a tolerance of contact, a pile at rest stays at rest and needs no more sweeps", "[contact]") {
+  auto rest = [](const std::optional<double>& tolerance) {
+    MultiBody body;
+    pyramid(body, 6, "box", 0);
+    body.contact.tolerance = tolerance;
+    Simulation simulation(body, "rk4");
+    const VecX<double> q = simulation.state().q;
+    test::run(simulation, 0.4, 200);
+    CHECK((simulation.state().q - q).lpNorm<Eigen::Infinity>() < 1e-8 * kHalf);
+    CHECK(simulation.state().v.lpNorm<Eigen::Infinity>() < 1e-10);
+    return simulation.step_counters().contact_sweeps;
+  };
+  CHECK(rest(1e-3) <= rest(std::nullopt));
 }
 
 TEST_CASE("a tolerance of contact that is out of range is refused", "[contact]") {

@@ -402,13 +402,15 @@ PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext
   const Pairs rest(motion.resting);
   std::vector<Contact> resting, impacts = motion.contacts;
   double since_first = 0;  // time since the first impact, s
+  bool any_rebound = false;
   for (const Contact& contact : motion.contacts) {
+    any_rebound = any_rebound || contact.restitution > 0;
     if (rest.has(contact))
       resting.push_back(contact);
     else
       since_first = std::max(since_first, contact.since);
   }
-  if (since_first == 0) return;
+  if (since_first == 0 || !any_rebound) return;
   for (Contact& contact : impacts)
     if (rest.has(contact)) contact.since = since_first;
   resolution_.resolve(step, {free.before, free.force_time(), free.h, false}, std::move(resting));
