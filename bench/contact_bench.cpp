@@ -4,11 +4,12 @@
 // pyramids of ten boxes stand. The program also measures the exponent with which the cost grows with the
 // number of bodies, and the time of each stage.
 //
-//   contact_bench [FOLDER] [MAX] [NAME] [SECONDS]
+//   contact_bench [FOLDER] [MAX] [NAME] [SECONDS] [TOLERANCE]
 //
 // Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
 // largest number of bodies (10000). NAME: measures only the systems whose name contains this text. SECONDS: a
-// system is not measured with more bodies if that run would take longer than this (60).
+// system is not measured with more bodies if that run would take longer than this (60). TOLERANCE: that of
+// contact (ContactSettings::tolerance); 0: none (0).
 //
 // Columns of the table, with the names of the columns of the files if they differ:
 //   step               mean time of a step in the whole run (step_us_per_body)
@@ -115,10 +116,13 @@ void measure_stages(Simulation& simulation, const State& state, Cost& cost) {
   });
 }
 
-/// Measures a system of n bodies. seconds: receives the time of its run.
-Cost measure(const System& system, int n, double& seconds) {
+/// Measures a system of n bodies. tolerance: that of contact; 0: none. seconds: receives the time of its run.
+Cost measure(const System& system, int n, double tolerance, double& seconds) {
   MultiBody body, without_contact, sleepy;
-  for (MultiBody* each : {&body, &without_contact, &sleepy}) bench::build(*each, system, n);
+  for (MultiBody* each : {&body, &without_contact, &sleepy}) {
+    bench::build(*each, system, n);
+    if (tolerance > 0) each->contact.tolerance = tolerance;
+  }
   without_contact.contact.active = false;
   sleepy.contact.sleep = Sleep{1e-3};
   Simulation simulation(body, "rk4"), contact_free(without_contact, "rk4"), sleeping(sleepy, "rk4");
@@ -150,14 +154,20 @@ void print(const Cost& c, bench::TableFile& file) {
            c.solve, c.deepest, c.residual, c.fallbacks);
 }
 
+/// What is measured: see the start of this file.
+struct Extent {
+  int max_bodies;
+  double max_seconds, tolerance;
+};
+
 /// Measures a system with 10, 100, ... bodies and prints its costs and their growth.
-void measure_sizes(const System& system, int max_bodies, double max_seconds, bench::TableFile& costs_file,
+void measure_sizes(const System& system, const Extent& extent, bench::TableFile& costs_file,
                    bench::TableFile& exponents_file) {
   std::vector<Cost> costs;
   double seconds = 0;
   try {
-    for (int n = 10; n <= max_bodies && 11 * seconds < max_seconds; n *= 10) {
-      costs.push_back(measure(system, n, seconds));
+    for (int n = 10; n <= extent.max_bodies && 11 * seconds < extent.max_seconds; n *= 10) {
+      costs.push_back(measure(system, n, extent.tolerance, seconds));
       print(costs.back(), costs_file);
     }
   } catch (const StepFailure& failure) {
@@ -175,8 +185,8 @@ void measure_sizes(const System& system, int max_bodies, double max_seconds, ben
 
 int main(int argc, char** argv) try {
   const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "", only = argc > 3 ? argv[3] : "";
-  const int max_bodies = argc > 2 ? std::atoi(argv[2]) : 10000;
-  const double max_seconds = argc > 4 ? std::atof(argv[4]) : 60;
+  const Extent extent{argc > 2 ? std::atoi(argv[2]) : 10000, argc > 4 ? std::atof(argv[4]) : 60,
+                      argc > 5 ? std::atof(argv[5]) : 0};
   auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
   char calibration[128];
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
@@ -195,7 +205,7 @@ int main(int argc, char** argv) try {
       "solve", "deepest", "residual", "fallbacks");
   for (const System& system : bench::systems())
     if (system.name.find(only) != std::string::npos)
-      measure_sizes(system, max_bodies, max_seconds, costs_file, exponents_file);
+      measure_sizes(system, extent, costs_file, exponents_file);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

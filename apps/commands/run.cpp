@@ -134,6 +134,15 @@ void print_error(const pliant::ErrorEstimate& error) {
   std::cout << "\n";
 }
 
+/// Returns "; errors of contact: R m/s, D m" with the largest residual and overlap of a run; empty without
+/// contact.
+std::string contact_summary(const pliant::Run& run) {
+  const pliant::StepCounters& counters = run.record().step_counters;
+  if (!run.scene().body.contact.active) return {};
+  return "; largest violation of the laws of contact " + pliant::rounded_text(counters.contact_residual) +
+         " m/s, largest overlap " + pliant::rounded_text(counters.contact_overlap) + " m";
+}
+
 int run_scene(const RunCommand& command) {
   const fs::path folder = folder_of(command);
   SceneOptions asked = command.scene;
@@ -186,7 +195,7 @@ int run_scene(const RunCommand& command) {
               << pliant::count_text(run.record().states, "state")
               << " recorded; largest error of the energy balance "
               << pliant::rounded_text(run.record().max_balance_error) << " J (largest kinetic energy "
-              << pliant::rounded_text(run.record().max_kinetic) << " J)\n";
+              << pliant::rounded_text(run.record().max_kinetic) << " J)" << contact_summary(run) << "\n";
   return kDone;
 }
 

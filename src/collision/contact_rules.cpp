@@ -47,6 +47,9 @@ ContactRules::ContactRules(const Model& model)
     fail_number("the longest step (s)", settings.longest_step, "a number > 0");
   if (!(settings.interval > 0) || !std::isfinite(settings.interval))
     fail_number("the interval of clusters (s)", settings.interval, "a number > 0");
+  if (const double tolerance = settings.tolerance.value_or(kMinContactTolerance);
+      !(tolerance >= kMinContactTolerance && tolerance <= kMaxContactTolerance))
+    fail_number("the tolerance", tolerance, "a number from 1e-14 to 0.1");
   std::map<std::string, int> numbers;
   auto add = [&](const std::string& name, const char* what) {
     if (!numbers.emplace(name, static_cast<int>(numbers.size())).second)

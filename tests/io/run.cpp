@@ -236,10 +236,56 @@ TEST_CASE("N57: if a joint pulls a part into a plane, run.json names the joint, 
   scene.appearance.emplace_back();
   const NewFolder folder;
   REQUIRE(run(scene, folder / "out"));
-  const std::string notes = record_of(folder / "out").at("notes").dump();
+  const auto json = record_of(folder / "out");
+  const std::string notes = json.at("notes").dump();
   CAPTURE(notes);
   CHECK(notes.find("part 'weight' and the plane 'floor' overlap by") != std::string::npos);
   CHECK(notes.find("unless ball 'pull' prevents it") != std::string::npos);
+  // The ball reaches the floor at t = 0.2 s and is 0.2 m deep at the end.
+  CHECK(
+      notes.find("s velocities at contacts violated the laws of contact by 0.5 m/s, but the tolerance there "
+                 "is 0.0005 m/s, a thousandth of the speed that the impulses stopped; use a shorter step") !=
+      std::string::npos);
+  CHECK(
+      notes.find("at t = 0.6 s bodies still overlapped after their separation by 0.2 m, but the tolerance") !=
+      std::string::npos);
+  const auto& monitors = json.at("monitors");
+  CHECK(monitors.at("max_contact_residual") == Approx(0.5));
+  CHECK(monitors.at("max_contact_overlap") == Approx(0.2).epsilon(1e-3));
+  CHECK(monitors.at("worst_contact_residual").at("value") == Approx(0.5));
+  CHECK(monitors.at("worst_contact_residual").at("tolerance") == Approx(5e-4));
+  CHECK(monitors.at("worst_contact_overlap").at("time") == Approx(0.6));
+}
+
+TEST_CASE("a resumed run keeps the largest errors of contact, and bodies at rest cause no warning") {
+  const auto scene_until = [](double end) {
+    auto scene = std::make_unique<Scene>();
+    scene->name = "drop";
+    scene->end = end;
+    scene->step = 2e-3;
+    scene->frame_rate = 50;
+    scene->integrator = "rk4";
+    for (int i = 0; i < 3; ++i)
+      scene->body.add(make_part("box" + std::to_string(i), "box", {}, 1000))
+          .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+          .place({0, 0, 0.15 + 0.25 * i});
+    scene->body.contact.active = true;
+    scene->body.contact.tolerance = 1e-3;
+    scene->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+    scene->appearance.resize(3);
+    return scene;
+  };
+  const NewFolder folder;
+  REQUIRE(run(*scene_until(0.4), folder / "unbroken"));
+  REQUIRE(run(*scene_until(0.3), folder / "resumed"));
+  const auto first = record_of(folder / "resumed").at("monitors");
+  REQUIRE(run(*scene_until(0.4), folder / "resumed", {Existing::resume}));
+  const auto unbroken = record_of(folder / "unbroken"), resumed = record_of(folder / "resumed");
+  CHECK(first.at("max_contact_residual") > 0.0);
+  for (const char* key :
+       {"max_contact_residual", "max_contact_overlap", "worst_contact_residual", "worst_contact_overlap"})
+    CHECK(resumed.at("monitors").at(key) == unbroken.at("monitors").at(key));
+  CHECK(unbroken.at("notes").dump().find("warning") == std::string::npos);
 }
 
 TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, gives identical files") {

@@ -18,6 +18,7 @@
 #include <pliant/simulate/simulation.h>
 
 #include "catch.h"
+#include "motion.h"
 #include "schema_judge.h"
 
 namespace scenes_test {
@@ -447,6 +448,24 @@ TEST_CASE("the sleep settings are read") {
   CHECK(given->speed == 0.01);
   CHECK(given->after == 2);
   CHECK(short_one->after == 0.5);
+}
+
+TEST_CASE("Newton's cradle: the last ball swings as high as the first, and the others hang still") {
+  // The amplitude is 50 degrees, and the length 0.6 m: after half a period the last ball is at its summit.
+  const double length = 0.6, amplitude = 50 * kPi / 180,
+               half_period = 2 * pliant::test::elliptic_K(amplitude) * std::sqrt(length / 9.81),
+               height = 1 - length * std::cos(amplitude);
+  double highest = 0, first_later = 0;
+  run("cradle.json", 2 * half_period, 1e-8, [&](const Simulation& simulation, const pliant::Ledger&) {
+    const pliant::State& state = simulation.state();
+    highest = std::max(highest, state.q[4 * 7 + 2]);
+    first_later = state.q[2];
+    for (int ball = 1; ball <= 3; ++ball) REQUIRE(state.q[7 * ball + 2] == Approx(0.4).margin(1e-9));
+    if (simulation.time() > 0.5 * half_period + 2e-3 && simulation.time() < 1.5 * half_period - 2e-3)
+      REQUIRE(state.q[2] == Approx(0.4).margin(1e-9));  // the first ball
+  });
+  CHECK(highest == Approx(height).margin(1e-5));
+  CHECK(first_later == Approx(height).margin(1e-4));
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {

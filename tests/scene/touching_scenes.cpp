@@ -31,8 +31,8 @@ using pliant::VecX;
 
 namespace {
 
-const std::vector<std::string> kRigid{"bowl", "dominoes", "slope", "tower"}, kSoft{"balloons", "springboard"},
-    kJointed{"dragonfly", "snowman"};
+const std::vector<std::string> kRigid{"bowl", "cradle", "dominoes", "slope", "tower"},
+    kSoft{"balloons", "springboard"}, kJointed{"dragonfly", "snowman"};
 
 /// Runs a scene to its end, and checks the overlaps after every step. after_step: called with the simulation
 /// after every step. Returns the number of times at which a contact starts after 50 ms without any contact;

@@ -2,7 +2,9 @@
 // the resulting velocities; momentum; warm starts.
 #include "catch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -223,6 +225,27 @@ TEST_CASE("impulses also change velocities that no contact uses", "[coulomb]") {
   CHECK((x.tail(kSize)(used) - x_reduced.tail(6)).norm() < 1e-10);
 }
 
+TEST_CASE("a tolerance as a share of the approach speed bounds the residual and saves sweeps", "[coulomb]") {
+  for (const int size : {3, 6}) {
+    int last_sweeps = std::numeric_limits<int>::max();
+    for (const double share : {1e-12, 1e-8, 1e-4, 1e-2}) {
+      CAPTURE(size, share);
+      Draws draws(5);
+      LineOfMasses line(12, size, 2, 0.5, draws);
+      double approach = 0;
+      for (int k = 0; k < line.system.size(); ++k)
+        approach = std::max(approach, -line.system.velocity(k, line.x)[0]);
+      const CoulombResult result = line.system.solve(line.x, {0, share});
+      CHECK(result.residual <= share * approach + 1e-14);
+      CHECK(result.worst_residual == result.residual);
+      CHECK(result.worst_accepted >= share * approach * (1 - 1e-12));
+      CHECK(result.worst_residual <= result.worst_accepted);
+      CHECK(result.sweeps <= last_sweeps);
+      last_sweeps = result.sweeps;
+    }
+  }
+}
+
 TEST_CASE("the search ends if it stalls because of nearly equal contacts", "[coulomb]") {
   // A body has four contacts with the ground. A fifth contact is a micrometre from one of them, with a
   // slightly different approach rate that only a huge impulse could equalise.
@@ -254,7 +277,10 @@ TEST_CASE("a motion that no impulse can stop is reported in the residual", "[cou
   system.add_contact(0.5);
   system.add_side(0, 0, 3) = Mat3<double>::Identity();
   VecX<double> x = Vec3<double>(-2, 0, 0);
-  CHECK(system.solve(x).residual == Approx(2).epsilon(1e-15));
+  const CoulombResult result = system.solve(x);
+  CHECK(result.residual == Approx(2).epsilon(1e-15));
+  CHECK(result.worst_residual == result.residual);
+  CHECK(result.worst_accepted == Approx(2e-3));
   CHECK(x == Vec3<double>(-2, 0, 0));
 }
 

@@ -81,11 +81,25 @@ struct Sleep {
   double after = 0.5;  ///< time at rest after which a part falls asleep, s; must be > 0
 };
 
+/// How impacts that happen at the same time are resolved.
+enum class ImpactOrder {
+  simultaneous,  ///< Newton's law holds at all contacts at once
+  sequential     ///< impacts of two bodies follow each other, the fastest first (contact/impact_sequence.h)
+};
+
+/// Smallest and largest value of ContactSettings::tolerance.
+inline constexpr double kMinContactTolerance = 1e-14, kMaxContactTolerance = 0.1;
+
 struct ContactSettings {
   bool active = false;        ///< whether there is any contact
   bool between_parts = true;  ///< whether parts touch each other, or planes and obstacles only
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over speed before
+  ImpactOrder impacts = ImpactOrder::simultaneous;
+  /// Largest violation of the laws of contact, as a share of the largest speed at which bodies that touch
+  /// each other would approach without impulses (contact/README.md). At rest this is the speed that gravity
+  /// gives a body in a step, at an impact the speed of the impact. Not given: rounding.
+  std::optional<double> tolerance{};
   /// Pairs with settings of their own. Two parts with a common joint touch only if a pair names both.
   std::vector<ContactPair> pairs;
   std::vector<ContactGroup> groups;

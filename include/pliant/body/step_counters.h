@@ -5,6 +5,19 @@
 
 namespace pliant {
 
+/// A violation of the laws of contact: a velocity, m/s, or an overlap, m.
+struct ContactViolation {
+  double value = 0;      ///< m/s or m
+  double tolerance = 0;  ///< the violation that is allowed there, m/s or m
+  double time = 0;       ///< end of its step, s
+
+  bool is_allowed() const { return value <= tolerance; }
+  /// Replaces this violation by another one if the other is larger in units of its tolerance.
+  void keep_worse(const ContactViolation& other) {
+    if (other.value * tolerance > value * other.tolerance || (value == 0 && other.value > 0)) *this = other;
+  }
+};
+
 struct StepCounters {
   long steps = 0;        ///< accepted steps
   long evaluations = 0;  ///< evaluations of the accelerations
@@ -21,9 +34,15 @@ struct StepCounters {
   long contact_fallbacks = 0;
   long contact_cutoffs =
       0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts
+  /// Impacts in sequences (ImpactOrder::sequential); pairs that approach equally fast count as one.
+  long sequential_impacts = 0;
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s
+  double contact_overlap = 0;   ///< largest overlap after the last separation of an accepted step, m
+  /// Of accepted steps, in units of the tolerances: the worst residual and the worst overlap after the last
+  /// separation. Overlaps of bodies that started in each other, and are still being separated, are included.
+  ContactViolation worst_residual{}, worst_overlap{};
 
-  /// Adds counts, and keeps the larger residual.
+  /// Adds counts, and keeps the larger errors of contact.
   StepCounters& operator+=(const StepCounters& other) {
     steps += other.steps;
     evaluations += other.evaluations;
@@ -35,7 +54,11 @@ struct StepCounters {
     contact_sweeps += other.contact_sweeps;
     contact_fallbacks += other.contact_fallbacks;
     contact_cutoffs += other.contact_cutoffs;
+    sequential_impacts += other.sequential_impacts;
     contact_residual = std::max(contact_residual, other.contact_residual);
+    contact_overlap = std::max(contact_overlap, other.contact_overlap);
+    worst_residual.keep_worse(other.worst_residual);
+    worst_overlap.keep_worse(other.worst_overlap);
     return *this;
   }
 };

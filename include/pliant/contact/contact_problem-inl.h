@@ -273,8 +273,9 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
     along = 0;
     along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
   }
-  const CoulombResult result = system_.solve(after_);
-  ContactSolution solution{{}, {}, result.residual, result.sweeps, result.fallbacks};
+  const CoulombResult result = system_.solve(after_, {0, model_.body().contact.tolerance});
+  ContactSolution solution{
+      {}, {}, result.residual, result.worst_residual, result.worst_accepted, result.sweeps, result.fallbacks};
   for (int k = 0; k < system_.size(); ++k) {
     system_.add_change(k, k < n ? contacts_[at(k)].since : limit_time, shift_);
     if (k >= n) continue;
@@ -322,7 +323,7 @@ PLIANT_INLINE void ContactProblem::separate_bodies(const std::vector<double>& ma
           std::max(contacts_[at(k)].gap + system_.velocity(k, shift_)[0], -max_separation[at(k)]);
   }
   VecX<double> separation = VecX<double>::Zero(movers_.n_x());
-  system_.solve(separation, tolerance);
+  system_.solve(separation, {tolerance});
   shift_ += separation;
 }
 

@@ -15,8 +15,9 @@ struct ContactSolution {
   std::vector<Vec3<double>> impulse;   ///< of each contact on side a, N s, world
   std::vector<Vec3<double>> velocity;  ///< of side a relative to side b after the impulses, m/s, world
   double residual = 0;                 ///< largest violation of Coulomb's law, m/s
-  int sweeps = 0;                      ///< see CoulombResult
-  int fallbacks = 0;                   ///< see CoulombResult
+  double worst_residual = 0, worst_accepted = 0;  ///< see CoulombResult, m/s
+  int sweeps = 0;                                 ///< see CoulombResult
+  int fallbacks = 0;                              ///< see CoulombResult
 };
 
 class ContactProblem {

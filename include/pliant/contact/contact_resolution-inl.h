@@ -34,6 +34,10 @@ inline constexpr int kMaxChainLinks = 4;
 /// Overlaps below this share of the largest gap of a resting contact (RestingContacts::tight_gap) are not
 /// separated.
 inline constexpr double kAllowedOverlap = 1e-4;
+/// With ContactSettings::tolerance, overlaps up to kOverlapPerTolerance times the tolerance, in sizes of the
+/// smaller body, are not separated, if they are at most kMaxAllowedOverlap times RestingContacts::gap: a body
+/// that overlaps by more than this gap would rest at any velocity.
+inline constexpr double kOverlapPerTolerance = 1e-3, kMaxAllowedOverlap = 0.5;
 /// Overlaps of this many units in the last place of the positions are not separated either.
 inline constexpr double kRoundingUlps = 16;
 /// Contacts at nodes of meshes may overlap by this multiple of RestingContacts::tight_gap.
@@ -74,6 +78,8 @@ PLIANT_INLINE void ContactRecord::clear() {
   sliding.clear();
   joint_impulses.setZero();
   time.clear();
+  overlap = 0;
+  worst_residual = worst_overlap = {};
 }
 
 PLIANT_INLINE ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFinder& finder,
@@ -194,10 +200,10 @@ PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedM
   resolve_once(step, motion, std::move(contacts), motion.h > 0);
 }
 
-/// Sets the travel of each part towards the bodies that it meets in a motion of h seconds.
+/// Adds to the travel of each part its travel towards the bodies that it meets in a motion of h seconds.
 PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double h,
                                                      const std::vector<Contact>& contacts) {
-  travel_.assign(dynamics_.model().parts().size(), 0);
+  travel_.resize(dynamics_.model().parts().size(), 0);
   for (const Contact& contact : contacts) {
     const double opening = finder_.velocity(state, contact).dot(contact.normal);
     extend_travel(contact, h * std::max(0.0, -opening) +
@@ -223,6 +229,7 @@ PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const 
   step.counters.contact_fallbacks += solution.fallbacks;
   step.counters.contact_residual = std::max(step.counters.contact_residual, solution.residual);
   state.contact_residual = std::max(state.contact_residual, solution.residual);
+  record_.worst_residual.keep_worse({solution.worst_residual, solution.worst_accepted, step.t});
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
@@ -247,7 +254,7 @@ PLIANT_INLINE void ContactResolution::append_to_record(const std::vector<Contact
 }
 
 /// Resolves contacts once: applies the impulses, the displacements that they cause and their works. Then
-/// separates overlaps, unless motion.h is zero. warm: see solve().
+/// separates overlaps, unless motion.h is zero or motion.separates is false. warm: see solve().
 PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
                                                    std::vector<Contact> contacts, bool warm) {
   const State& before = motion.before;
@@ -277,12 +284,13 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   // (FreeMotion::reach) are an exception. These methods compute the work of forces from the velocities at the
   // start of the motion. This work is already zero for a resting part.
   if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
-  if (h > 0) separate_overlaps(step);
+  if (h > 0 && motion.separates) separate_overlaps(step);
   project_limits(step);
   if (by_energy)
     state.work[static_cast<int>(driven ? Work::anchors : Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
   append_to_record(contacts, solution);
+  if (motion.separates) travel_.clear();
 }
 
 PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vector<Contact> resolved,
@@ -348,8 +356,27 @@ PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) 
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
   const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
-  return std::max(contact_resolution::kAllowedOverlap * resting_.tight_gap(contact),
-                  contact_resolution::kRoundingUlps * rounding);
+  const double tolerance = dynamics_.model().body().contact.tolerance.value_or(0),
+               loose = std::min(contact_resolution::kOverlapPerTolerance * tolerance *
+                                    smaller_size(dynamics_.model(), contact),
+                                contact_resolution::kMaxAllowedOverlap * resting_.gap(contact));
+  return std::max({contact_resolution::kAllowedOverlap * resting_.tight_gap(contact), loose,
+                   contact_resolution::kRoundingUlps * rounding});
+}
+
+/// Records the overlaps that remain at time t (s). Without ContactSettings::tolerance, overlaps up to
+/// RestingContacts::tight_gap are within the tolerance of the record.
+PLIANT_INLINE void ContactResolution::record_overlaps(const std::vector<Contact>& contacts, double t) {
+  const bool has_tolerance = dynamics_.model().body().contact.tolerance.has_value();
+  record_.overlap = 0;
+  record_.worst_overlap = {};
+  for (const Contact& contact : contacts) {
+    if (!(contact.gap < 0)) continue;
+    const double allowed = allowed_overlap(contact);
+    record_.overlap = std::max(record_.overlap, -contact.gap);
+    record_.worst_overlap.keep_worse(
+        {-contact.gap, has_tolerance ? allowed : std::max(allowed, resting_.tight_gap(contact)), t});
+  }
 }
 
 /// Keeps the contacts that the separation of deep contacts affects. These are the contacts of bodies that
@@ -388,50 +415,63 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
       contacts.end());
 }
 
-/// Stage 7 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
-/// that this separation pushes into others are separated completely.
-PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
+/// Returns the contacts near a state, with those of bodies that a separation in a step may push into others.
+PLIANT_INLINE std::vector<Contact> ContactResolution::contacts_to_separate(const StepContext& step) {
+  const State& state = step.state;
+  std::vector<Contact> found = resting_.near(state, step.t);
+  double deepest = 0, largest = 0;
+  for (const Contact& contact : found) {
+    deepest = std::max(deepest, -contact.gap);
+    largest = std::max(largest, largest_separation(contact, step.h));
+  }
+  if (deepest > resting_.gap()) found = finder_.find(state, step.t, std::min(deepest, largest));
+  meshes_.find(state, step.t, found);
+  return found;
+}
+
+/// One round of a separation: displaces the bodies at some contacts, and adds the work of this displacement.
+PLIANT_INLINE void ContactResolution::separate(StepContext& step, const std::vector<Contact>& contacts) {
   State& state = step.state;
-  Workspace<double>& work = step.work;
-  const double h = step.h, t = step.t;
-  for (int i = 0; i < contact_resolution::kMaxSeparationRounds; ++i) {
-    std::vector<Contact> found = resting_.near(state, t);
-    double deepest = 0, largest = 0;
-    for (const Contact& contact : found) {
-      deepest = std::max(deepest, -contact.gap);
-      largest = std::max(largest, largest_separation(contact, h));
-    }
-    // The separation may move bodies into others within this distance.
-    if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, largest));
-    meshes_.find(state, t, found);
+  const double t = step.t;
+  double tolerance = std::numeric_limits<double>::infinity();
+  std::vector<double> max_separation;
+  for (const Contact& contact : contacts) {
+    tolerance = std::min(tolerance, contact_resolution::kSeparationTolerance * allowed_overlap(contact));
+    max_separation.push_back(largest_separation(contact, step.h));
+  }
+  const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
+  const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_),
+               work_before = state.work.sum();
+  evaluate_touched(dynamics_, state, t, contacts, step.work);
+  ContactProblem separation(dynamics_.model(), state, step.work, contacts);
+  separation.separate_bodies(max_separation, tolerance);
+  LoadWork loads(dynamics_, state);
+  apply_solution(separation, dynamics_.model(), step.work, state);
+  reconcile(step, parts);
+  state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
+  state.work[static_cast<int>(Work::contact)] +=
+      dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
+}
+
+/// Stage 7 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
+/// that this separation pushes into others are separated completely. Records the overlaps that remain.
+PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
+  for (int i = 0;; ++i) {
+    std::vector<Contact> found = contacts_to_separate(step);
+    record_overlaps(found, step.t);
     std::vector<PairKey> too_deep;
     bool any_deep = false;
     for (Contact& contact : found) {
       // The next steps remove the remaining overlap of a pair that was separated by its allowed distance.
       if (fully_separated_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
-      if (i == 0 && contact.gap < -largest_separation(contact, h)) too_deep.push_back(key_of(contact));
+      if (i == 0 && contact.gap < -largest_separation(contact, step.h)) too_deep.push_back(key_of(contact));
       any_deep = any_deep || contact.gap < -allowed_overlap(contact);
     }
     if (!any_deep) return;
+    if (i == contact_resolution::kMaxSeparationRounds) break;
     fully_separated_.insert(too_deep.begin(), too_deep.end());
-    keep_affected(found, work);
-    double tolerance = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : found)
-      tolerance = std::min(tolerance, contact_resolution::kSeparationTolerance * allowed_overlap(contact));
-    const std::vector<int> parts = parts_touched(dynamics_.model(), found);
-    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_),
-                 work_before = state.work.sum();
-    evaluate_touched(dynamics_, state, t, found, work);
-    ContactProblem separation(dynamics_.model(), state, work, found);
-    std::vector<double> max_separation;
-    for (const Contact& contact : found) max_separation.push_back(largest_separation(contact, h));
-    separation.separate_bodies(max_separation, tolerance);
-    LoadWork loads(dynamics_, state);
-    apply_solution(separation, dynamics_.model(), work, state);
-    reconcile(step, parts);
-    state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
-    state.work[static_cast<int>(Work::contact)] +=
-        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
+    keep_affected(found, step.work);
+    separate(step, found);
   }
   ++step.counters.contact_cutoffs;
 }

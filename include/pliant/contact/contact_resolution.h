@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include <pliant/body/step_counters.h>
 #include <pliant/collision/mesh/mesh_finder.h>
 #include <pliant/contact/contact_problem.h>
 #include <pliant/contact/resting_contacts.h>
@@ -22,6 +23,10 @@ struct ContactRecord {
   /// Reactions of all joints to these impulses: lambda, N s; C_q^T lambda acts on the parts.
   VecX<double> joint_impulses;
   std::vector<double> time;  ///< time in which each impulse acts: the length of the step of its bodies, s
+  double overlap = 0;        ///< largest overlap after the last separation, m
+  /// The worst residual of the impulses, and the worst overlap after the last separation, in units of the
+  /// tolerances.
+  ContactViolation worst_residual{}, worst_overlap{};
 
   void clear();
 };
@@ -31,6 +36,7 @@ struct ResolvedMotion {
   const State& before;  ///< state at its start; for impacts at one instant the state of the step itself
   double force_time;    ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
   double h;             ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated
+  bool separates = true;  ///< whether overlaps are separated afterwards; another resolution follows if not
 };
 
 class ContactResolution {
@@ -46,7 +52,8 @@ class ContactResolution {
   void end_step(double h, State& state) const;
 
   /// Applies the impulses at the contacts at step.t, the end of a motion, and the displacements that these
-  /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero.
+  /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero or
+  /// motion.separates is false.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
   /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the
@@ -87,7 +94,10 @@ class ContactResolution {
   double match_distance(const Contact& contact) const;
   void add_ejections(const State& state);
   double allowed_overlap(const Contact& contact) const;
+  void record_overlaps(const std::vector<Contact>& contacts, double t);
   void keep_affected(std::vector<Contact>& contacts, const Workspace<double>& work) const;
+  std::vector<Contact> contacts_to_separate(const StepContext& step);
+  void separate(StepContext& step, const std::vector<Contact>& contacts);
   void separate_overlaps(StepContext& step);
 
   const Dynamics& dynamics_;
@@ -99,8 +109,8 @@ class ContactResolution {
   std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // Travel of each part, m: the distance towards the bodies that it meets, plus its displacements by impulses
-  // (ejections).
+  // Travel of each part since the last separation, m: the distance towards the bodies that it meets, plus its
+  // displacements by impulses (ejections).
   std::vector<double> travel_;
   VecX<double> q_before_ejection_;
   // Pairs whose overlap was too deep to be separated in one step, and that have been separated by the allowed

@@ -63,6 +63,7 @@ PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics, const C
       meshes_(dynamics.model(), finder_.obstacles()),
       resting_(dynamics.model(), finder_),
       resolution_(dynamics, finder_, meshes_, resting_, record_),
+      impact_sequence_(finder_, resolution_),
       sleeping_(dynamics, resting_, meshes_),
       friction_events_(dynamics, finder_, resting_, resolution_, sleeping_) {
   for (ContactRecord* record : {&record_, &record_before_})
@@ -412,13 +413,41 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
                                                          !rest.has(c) && !impact_pairs.has(c));
                                 }),
                  contacts.end());
-  for (Contact& contact : contacts) {
-    const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
-    if (!rest.has(contact) && rebound > free.min_impact_speed) contact.rebound = rebound;
+  if (is_sequential()) {  // impacts that remain have no rebound
+    impact_sequence_.resolve(step, contacts, 0, free.min_impact_speed);
+  } else {
+    for (Contact& contact : contacts) {
+      const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
+      if (!rest.has(contact) && rebound > free.min_impact_speed) contact.rebound = rebound;
+    }
   }
   progress.clock.lap(times_.finding);
   resolution_.resolve(step, {state, 0, 0}, std::move(contacts));
   progress.clock.lap(times_.resolution);
+}
+
+/// Resolves the impacts at the contacts of the motion in sequence, at its end: first the resting contacts,
+/// whose impulses stand for forces, and then the impacts, which these contacts transmit. Impacts that remain
+/// have no rebound.
+PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext& step) {
+  const FreeMotion& free = motion.free;
+  const Pairs rest(motion.resting);
+  std::vector<Contact> resting, impacts = motion.contacts;
+  double since_first = 0;  // time since the first impact, s
+  bool any_rebound = false;
+  for (const Contact& contact : motion.contacts) {
+    any_rebound = any_rebound || contact.restitution > 0;
+    if (rest.has(contact))
+      resting.push_back(contact);
+    else
+      since_first = std::max(since_first, contact.since);
+  }
+  if (since_first == 0 || !any_rebound) return;
+  for (Contact& contact : impacts)
+    if (rest.has(contact)) contact.since = since_first;
+  resolution_.resolve(step, {free.before, free.force_time(), free.h, false}, std::move(resting));
+  impact_sequence_.resolve(step, impacts, free.h, free.min_impact_speed);
+  for (Contact& contact : motion.contacts) contact.rebound = 0;
 }
 
 /// Stages 6 and 7: applies the impulses at the contacts at the end of the motion, and separates the overlaps
@@ -439,6 +468,7 @@ PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) 
       if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = free.force_time();
   has_unlocated_ = has_unlocated_ || !contacts.empty();
   progress.clock.lap(times_.finding);
+  if (is_sequential()) resolve_sequence(motion, step);
   resolution_.resolve(step, {free.before, free.force_time(), free.h}, contacts);
   resolution_.resolve_chain(step, std::move(contacts), free.min_impact_speed);
   sleeping_.wake_moved(state);

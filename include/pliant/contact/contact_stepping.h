@@ -11,6 +11,7 @@
 #include <pliant/collision/mesh/mesh_finder.h>
 #include <pliant/contact/contact_resolution.h>
 #include <pliant/contact/friction_events.h>
+#include <pliant/contact/impact_sequence.h>
 #include <pliant/contact/resting_contacts.h>
 #include <pliant/contact/sleeping.h>
 #include <pliant/method/integrator.h>
@@ -96,6 +97,8 @@ class ContactStepping {
   bool locate_and_apply_impact(Motion& motion, Progress& progress);
   void apply_impact(const Motion& motion, const std::vector<Contact>& impacts, Progress& progress);
   void resolve_resting(const Motion& motion, StepContext& step, StageClock& clock);
+  void resolve_sequence(Motion& motion, StepContext& step);
+  bool is_sequential() const { return dynamics_.model().body().contact.impacts == ImpactOrder::sequential; }
   void resolve(Motion& motion, Progress& progress);
 
   /// A whole step that is compared with its two halves.
@@ -127,6 +130,7 @@ class ContactStepping {
   ContactRecord record_, record_before_;
   double recorded_ = 0;  ///< time since begin_step(), s
   ContactResolution resolution_;
+  ImpactSequence impact_sequence_;
   Sleeping sleeping_;
   FrictionEvents friction_events_;
   Workspace<double> scratch_;

@@ -226,6 +226,8 @@ PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, const std::ve
   for (const Vec3<double>& u : problem.velocities(state)) fastest = std::max(fastest, u.norm());
   resolution_.warm_start(motion.free.before, free.end(), free.h, trial.contacts, problem);
   const ContactSolution solution = problem.solve(free.force_time());
+  motion.step.counters.contact_sweeps += solution.sweeps;
+  motion.step.counters.contact_fallbacks += solution.fallbacks;
   for (std::size_t k = 0; k < trial.contacts.size(); ++k) {
     const Contact& contact = trial.contacts[k];
     const Vec3<double>& p = solution.impulse[k];
@@ -312,13 +314,13 @@ PLIANT_INLINE std::optional<double> FrictionEvents::stop(const Examined& motion,
 }
 
 /// Returns the largest acceleration with which sticking contacts begin to slip after a trial motion, m/s^2,
-/// or 0.
+/// or 0. Slip that a probe allows is subtracted: the result is continuous where slip begins.
 PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, const Trial& trial) {
   const Trial after = probe(motion, trial);
   double fastest = 0;
   for (const End& e : after.ends)
     if (starts_[at(e.start)].sticks() && e.slip.norm() > e.allowed_slip)
-      fastest = std::max(fastest, e.slip.norm() / after.free.h);
+      fastest = std::max(fastest, (e.slip.norm() - e.allowed_slip) / after.free.h);
   return fastest;
 }
 

@@ -216,6 +216,8 @@ PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   while (of.time() < end) {
     of.begin_step();
     of.controlled_step(end);
+    of.record_contact_errors();
+    of.record_without_inertia();
     farther = include_path(of, of.last_good_, of.time() - of.last_good_.time()) || farther;
   }
   return farther;

@@ -450,7 +450,16 @@ PLIANT_INLINE void Simulation::end_step() {
   ++step_counters_.steps;
   const std::string where = failure_report::not_finite(model_, state_, work_);
   if (!where.empty()) fail_not_finite(where);
+  if (contact_) record_contact_errors();
   record_without_inertia();
+}
+
+/// Adds the errors of contact of the step to the counters.
+PLIANT_INLINE void Simulation::record_contact_errors() {
+  const ContactRecord& record = contact_->record();
+  step_counters_.contact_overlap = std::max(step_counters_.contact_overlap, record.overlap);
+  step_counters_.worst_residual.keep_worse(record.worst_residual);
+  step_counters_.worst_overlap.keep_worse(record.worst_overlap);
 }
 
 /// Restores the state before the step and throws NumericalFailure, or UnsatisfiableModel if a conflict of

@@ -108,6 +108,7 @@ class Simulation {
   StepContext context();
   void switch_joints(double t, double tolerance);
   void follow_paths(double kink, double tolerance);
+  void record_contact_errors();
   void record_without_inertia();
 
   Model model_;

@@ -17,12 +17,12 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerances of the sweeps. The largest of the two and of `tolerance` (CoulombSystem::solve) is used.
+/// Tolerances of the sweeps. The largest of the two and of both tolerances of CoulombTolerance is used.
 /// kSweepExact is relative to the largest contact velocity without impulses. kSweepUlps is in units of the
 /// rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
-/// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh).
-/// Point masses are many and weakly coupled.
+/// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh),
+/// unless CoulombTolerance::share is given. Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPointMasses = 1e-6;
 /// Rounds of the search: maximum number of sweeps, and number of pairs of sweeps for the extrapolation (0: no
 /// extrapolation). Larger clusters (more than kManyContacts contacts) skip the rounds without extrapolation.
@@ -68,8 +68,8 @@ inline void extrapolate_sweeps(const SweepGram& G, int filled, CoulombScratch::S
 
 }  // namespace detail
 
-PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double tolerance,
-                                             CoulombScratch& scratch)
+PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number,
+                                             const CoulombTolerance& tolerance, CoulombScratch& scratch)
     : system_(system),
       number_(number),
       contacts_(system.order_.data() + system.clusters_[at(number)]),
@@ -81,12 +81,15 @@ PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, 
       has_point_masses_ = has_point_masses_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
 }
 
-/// Computes scale_, exact_ and acceptable_. The present velocities must be those without impulses.
+/// Computes scale_, approach_, rounding_, exact_ and acceptable_. The present velocities must be those
+/// without impulses.
 PLIANT_INLINE void CoulombCluster::set_scale() {
   double terms = 0;
-  scale_ = 0;
+  scale_ = approach_ = 0;
   for (int i = 0; i < size_; ++i) {
-    scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
+    const Vec3<double> u = velocity(i);
+    scale_ = std::max(scale_, u.lpNorm<Eigen::Infinity>());
+    approach_ = std::max(approach_, -u[0]);
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
@@ -94,8 +97,11 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
     }
   }
-  exact_ = std::max({(has_point_masses_ ? detail::kSweepExactOfPointMasses : detail::kSweepExact) * scale_,
-                     detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, tolerance_});
+  const bool rough = has_point_masses_ && !tolerance_.share;
+  rounding_ =
+      std::max({(rough ? detail::kSweepExactOfPointMasses : detail::kSweepExact) * scale_,
+                detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, tolerance_.velocity});
+  exact_ = std::max(rounding_, tolerance_.share.value_or(0) * approach_);
   acceptable_ =
       std::max(exact_, (has_point_masses_ || size_ > detail::kManyContacts ? detail::kAcceptableOfManyContacts
                                                                            : detail::kAcceptableResidual) *
@@ -144,14 +150,16 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   }
 }
 
-/// Returns exact_, or the rounding error of the present impulses as a velocity if that is larger, but at most
-/// acceptable_. This rounding error is large where a light part supports a heavy one.
-PLIANT_INLINE double CoulombCluster::exact_level() const {
+/// Returns exact_ (to_rounding: rounding_), or the rounding error of the present impulses as a velocity if
+/// that is larger, but at most acceptable_. This rounding error is large where a light part supports a heavy
+/// one.
+PLIANT_INLINE double CoulombCluster::exact_level(bool to_rounding) const {
   double largest = 0;
   for (int i = 0; i < size_; ++i)
     largest = std::max(largest, contact(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
   return std::max(
-      exact_, std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
+      to_rounding ? rounding_ : exact_,
+      std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
 }
 
 /// Solves the law of each contact once, in ascending (forward) or descending order. Returns the largest
@@ -237,7 +245,7 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
       best = next;
       best_error = error;
     }
-    if (error <= exact_level()) return true;
+    if (error <= exact_level() && (!tolerance_.share || residual() <= exact_level())) return true;
     if (history == 0) {
       now.swap(next);
       continue;
@@ -311,6 +319,16 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
+/// Adds the residual of this cluster to the result.
+PLIANT_INLINE void CoulombCluster::record(double residual, CoulombResult& result) const {
+  result.residual = std::max(result.residual, residual);
+  const double accepted =
+      std::max(exact_level(), tolerance_.share.value_or(detail::kReportedShare) * approach_);
+  if (!(residual * result.worst_accepted >= result.worst_residual * accepted) || !(residual > 0)) return;
+  result.worst_residual = residual;
+  result.worst_accepted = accepted;
+}
+
 /// Solves the cluster: a single contact directly, others from a warm start or by search(). If the search
 /// fails, for instance because joints and contacts contradict each other, it is repeated with compliant
 /// contacts, for which a solution exists. kCompliantPreference decides between the two results.
@@ -321,8 +339,7 @@ PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
     set_scale();
     sweep(true);
     ++result.sweeps;
-    result.residual = std::max(result.residual, residual());
-    return;
+    return record(residual(), result);
   }
   VecX<double> initial, found;
   copy_impulses(initial);
@@ -344,7 +361,7 @@ PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
     else
       set_impulses(found);
   }
-  result.residual = std::max(result.residual, error);
+  record(error, result);
   for (int i = 0; i < size_; ++i) contact(i).warm_start = may_warm_start();
 }
 

@@ -19,6 +19,9 @@ inline constexpr int kManyContacts = 100;
 /// compliant contacts; for this decision, large clusters and clusters with point masses use
 /// kAcceptableOfManyContacts.
 inline constexpr double kAcceptableResidual = 1e-6;
+/// Without CoulombTolerance::share, residuals up to this share of the approach speed are accepted in
+/// CoulombResult::worst_accepted.
+inline constexpr double kReportedShare = 1e-3;
 
 }  // namespace detail
 
@@ -64,7 +67,8 @@ class CoulombCluster {
  public:
   /// number: index of the cluster. The velocities of the system must include the present impulses. tolerance:
   /// see CoulombSystem::solve.
-  CoulombCluster(CoulombSystem& system, int number, double tolerance, CoulombScratch& scratch);
+  CoulombCluster(CoulombSystem& system, int number, const CoulombTolerance& tolerance,
+                 CoulombScratch& scratch);
   /// Finds the impulses and stores them in the system. Updates the largest residual in result and adds the
   /// number of sweeps; adds a fallback if the search was repeated with compliant contacts.
   void solve(CoulombResult& result);
@@ -81,7 +85,8 @@ class CoulombCluster {
   Vec3<double> velocity(int i) const;
   Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
   void add_impulse(int i, const Vec3<double>& dp);
-  double exact_level() const;
+  double exact_level(bool to_rounding = false) const;
+  void record(double residual, CoulombResult& result) const;
   double sweep(bool forward);
   double residual() const;
   void copy_impulses(VecX<double>& impulses) const;
@@ -100,13 +105,15 @@ class CoulombCluster {
   int number_;
   const int* contacts_;
   int size_;
-  double tolerance_;
+  CoulombTolerance tolerance_;
   CoulombScratch& scratch_;
   bool has_point_masses_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
   double scale_ = 0;               // the largest contact velocity without impulses
-  double exact_ = 0;               // residuals up to this velocity are rounding
-  double acceptable_ = 0;          // residuals up to this velocity are acceptable
-  double compliance_ = 0;          // compliance of all contacts, as a fraction of the diagonal of W
+  double approach_ = 0;            // the approach speed (CoulombTolerance)
+  double rounding_ = 0;    // residuals up to this velocity are rounding, or CoulombTolerance::velocity
+  double exact_ = 0;       // residuals up to this velocity are within the tolerance
+  double acceptable_ = 0;  // residuals up to this velocity are acceptable
+  double compliance_ = 0;  // compliance of all contacts, as a fraction of the diagonal of W
 };
 
 }  // namespace pliant

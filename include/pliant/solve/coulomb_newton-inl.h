@@ -29,7 +29,7 @@ inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
 inline constexpr double kMaxContactFill = 10;
 /// Newton's method reduces the residual to this fraction of exact_level(), for which one more step is usually
 /// enough. The second value is for warm starts, so that residuals do not accumulate from time step to time
-/// step.
+/// step. For this reason a warm start aims at rounding with any tolerance: bodies at rest stay at rest.
 inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
 /// Weight of the proximal term, which keeps linearly dependent impulses near their present values. In each
 /// step it is multiplied by kProximalFactor, from kFirstProximal (kProximalNear for warm starts) down to
@@ -214,7 +214,7 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
 /// Returns false at once if the linear system is too large. near: whether it begins at a warm start.
 PLIANT_INLINE bool CoulombCluster::newton(bool near) {
   const double beyond = near ? detail::kContactNewtonExactNear : detail::kContactNewtonExact;
-  double exact = exact_level();
+  double exact = exact_level(near);
   double best_error = residual();
   if (best_error <= beyond * exact) return true;
   MoverSystem* movers = couple_movers();
@@ -243,7 +243,7 @@ PLIANT_INLINE bool CoulombCluster::newton(bool near) {
     if (error < best_error) {
       copy_impulses(best);
       best_error = error;
-      exact = exact_level();
+      exact = exact_level(near);
       futile = 0;
     } else if (best_error <= exact) {
       break;
@@ -260,7 +260,7 @@ PLIANT_INLINE bool CoulombCluster::newton(bool near) {
     proximal = std::max(factor * proximal, min_proximal);
   }
   set_impulses(best);
-  return residual() <= exact;
+  return residual() <= exact_level();
 }
 
 }  // namespace pliant

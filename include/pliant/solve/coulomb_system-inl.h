@@ -195,7 +195,7 @@ PLIANT_INLINE void CoulombSystem::find_clusters() {
   clusters_.push_back(static_cast<int>(order_.size()));
 }
 
-PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, double tolerance) {
+PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, const CoulombTolerance& tolerance) {
   if (!complete_) complete();
   CoulombResult result;
   x0_.resize(static_cast<Eigen::Index>(used_.size()));

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <pliant/math/index.h>
@@ -17,12 +18,23 @@
 
 namespace pliant {
 
+/// The accuracy of a solution. Smaller violations of the law are accepted.
+struct CoulombTolerance {
+  double velocity = 0;  ///< a velocity, in units of u
+  /// A share of the approach speed of a cluster, which is the largest -u_n of its contacts without impulses.
+  /// Not given: the search ends at rounding.
+  std::optional<double> share{};
+};
+
 /// The quality and the cost of a solution.
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
-  int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
+  /// The residual of the cluster in which it is largest in units of the accepted residual of the cluster.
+  /// Without CoulombTolerance::share, a share of 1e-3 is accepted here.
+  double worst_residual = 0, worst_accepted = 0;
+  int sweeps = 0;  ///< number of sweeps over all contacts of a cluster, summed over the clusters
   /// Number of clusters whose search was repeated with compliant contacts. A search is repeated if it leaves
-  /// a residual above `tolerance` (see CoulombSystem::solve) and above 1e-6 of the largest contact velocity
+  /// a residual above the tolerance (see CoulombSystem::solve) and above 1e-6 of the largest contact velocity
   /// without impulses. The fraction is 1e-2 for clusters with more than 100 contacts or with point masses,
   /// because their searches converge more slowly.
   int fallbacks = 0;
@@ -90,9 +102,8 @@ class CoulombSystem {
   /// if the contact has no side.
   bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
   /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
-  /// output. tolerance: a velocity; smaller violations of the law are accepted. No contact or mover can be
-  /// added afterwards.
-  CoulombResult solve(VecX<double>& x, double tolerance = 0);
+  /// output. No contact or mover can be added afterwards.
+  CoulombResult solve(VecX<double>& x, const CoulombTolerance& tolerance = {});
 
  private:
   friend class CoulombCluster;

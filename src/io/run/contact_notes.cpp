@@ -83,4 +83,25 @@ std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<To
   return notes;
 }
 
+std::vector<std::string> violation_notes(const StepCounters& counters, const ContactSettings& settings) {
+  const std::string share =
+      settings.tolerance ? rounded_text(*settings.tolerance) : std::string("a thousandth");
+  const std::string remedy = std::string("use a shorter step") +
+                             (settings.tolerance ? " or a larger \"tolerance\" of \"contact\"" : "");
+  auto text = [](const ContactViolation& violation, const char* what, const char* unit) {
+    return "warning: at t = " + rounded_text(violation.time) + " s " + what + " by " +
+           rounded_text(violation.value) + " " + unit + ", but the tolerance there is " +
+           rounded_text(violation.tolerance) + " " + unit;
+  };
+  std::vector<std::string> notes;
+  if (const ContactViolation& worst = counters.worst_residual; !worst.is_allowed())
+    notes.push_back(text(worst, "velocities at contacts violated the laws of contact", "m/s") + ", " + share +
+                    " of the speed that the impulses stopped; " + remedy +
+                    ", and check whether a joint or a prescribed motion presses bodies into each other");
+  if (const ContactViolation& worst = counters.worst_overlap; !worst.is_allowed())
+    notes.push_back(text(worst, "bodies still overlapped after their separation", "m") + "; " + remedy +
+                    "; bodies that start in each other are separated at a bounded speed");
+  return notes;
+}
+
 }  // namespace pliant

@@ -338,11 +338,17 @@ void Run::write_record() {
   record_.step_counters.limit_impulses = earlier_steps_.limit_impulses + session.limit_impulses;
   record_.step_counters.factorisations = earlier_steps_.factorisations + session.factorisations;
   record_.step_counters.impacts = earlier_steps_.impacts + session.impacts;
+  record_.step_counters.sequential_impacts = earlier_steps_.sequential_impacts + session.sequential_impacts;
   record_.step_counters.contact_sweeps = earlier_steps_.contact_sweeps + session.contact_sweeps;
   record_.step_counters.contact_fallbacks = earlier_steps_.contact_fallbacks + session.contact_fallbacks;
   record_.step_counters.contact_cutoffs = earlier_steps_.contact_cutoffs + session.contact_cutoffs;
   record_.step_counters.contact_residual =
       std::max(earlier_steps_.contact_residual, session.contact_residual);
+  record_.step_counters.contact_overlap = std::max(earlier_steps_.contact_overlap, session.contact_overlap);
+  record_.step_counters.worst_residual = earlier_steps_.worst_residual;
+  record_.step_counters.worst_residual.keep_worse(session.worst_residual);
+  record_.step_counters.worst_overlap = earlier_steps_.worst_overlap;
+  record_.step_counters.worst_overlap.keep_worse(session.worst_overlap);
   record_.counters = earlier_counters_;
   record_.counters += simulation_->counters();
   const std::vector<double>& rested = simulation_->state().at_rest;
@@ -419,6 +425,7 @@ bool Run::simulate() {
            ": the error of these steps is not controlled; they are at most " +
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
            " s long, and --estimate-error measures their error");
+    for (const std::string& text : violation_notes(record_.step_counters, scene_->body.contact)) note(text);
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });

@@ -85,6 +85,10 @@ Json options_of(const RunRecord& r) {
           {"command", r.command}};
 }
 
+Json violation_of(const ContactViolation& violation) {
+  return {{"value", violation.value}, {"tolerance", violation.tolerance}, {"time", violation.time}};
+}
+
 Json work_of(const RunRecord& r) {
   return {{"steps", r.step_counters.steps},
           {"evaluations", r.step_counters.evaluations},
@@ -93,6 +97,7 @@ Json work_of(const RunRecord& r) {
           {"limit_impulses", r.step_counters.limit_impulses},
           {"factorisations", r.step_counters.factorisations},
           {"impacts", r.step_counters.impacts},
+          {"sequential_impacts", r.step_counters.sequential_impacts},
           {"contact_sweeps", r.step_counters.contact_sweeps},
           {"contact_fallbacks", r.step_counters.contact_fallbacks},
           {"contact_cutoffs", r.step_counters.contact_cutoffs},
@@ -113,6 +118,9 @@ Json monitors_of(const RunRecord& r) {
           {"max_depth", r.max_depth},
           {"asleep", r.asleep},
           {"max_contact_residual", r.step_counters.contact_residual},
+          {"max_contact_overlap", r.step_counters.contact_overlap},
+          {"worst_contact_residual", violation_of(r.step_counters.worst_residual)},
+          {"worst_contact_overlap", violation_of(r.step_counters.worst_overlap)},
           {"largest_stable_step", bound(r.stable_step)}};
 }
 
@@ -194,6 +202,13 @@ void read_options(const Json& options, RunRecord& r) {
   options.at("command").get_to(r.command);
 }
 
+/// Reads a violation of the laws of contact; returns none if the record of an older version has none.
+ContactViolation read_violation(const Json& monitors, const char* key) {
+  if (!monitors.contains(key)) return {};
+  const Json& violation = monitors.at(key);
+  return {violation.at("value"), violation.at("tolerance"), violation.at("time")};
+}
+
 void read_work(const Json& work, RunRecord& r) {
   work.at("steps").get_to(r.step_counters.steps);
   work.at("evaluations").get_to(r.step_counters.evaluations);
@@ -202,6 +217,7 @@ void read_work(const Json& work, RunRecord& r) {
   r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
   r.step_counters.factorisations = work.value("factorisations", 0L);
   r.step_counters.impacts = work.value("impacts", 0L);
+  r.step_counters.sequential_impacts = work.value("sequential_impacts", 0L);
   r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
   r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
   r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
@@ -222,6 +238,9 @@ void read_monitors(const Json& monitors, RunRecord& r) {
   r.max_depth = monitors.value("max_depth", 0.0);
   r.asleep = monitors.value("asleep", 0);
   r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
+  r.step_counters.contact_overlap = monitors.value("max_contact_overlap", 0.0);
+  r.step_counters.worst_residual = read_violation(monitors, "worst_contact_residual");
+  r.step_counters.worst_overlap = read_violation(monitors, "worst_contact_overlap");
   if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
 }
 

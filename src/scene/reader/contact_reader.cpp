@@ -71,6 +71,23 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
       {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
        optional("restitution", number(between(0, 1), "1"),
                 "Ratio of the normal speed after an impact to the speed before it.", "0"),
+       optional(
+           "impacts",
+           choice({{"simultaneous",
+                    "Newton's law holds at all contacts at once: in a row of balls that touch, all balls "
+                    "after the first leave together"},
+                   {"sequential",
+                    "impacts of two bodies follow each other, the fastest first: in a row of equal balls "
+                    "with restitution 1 only the last ball leaves"}}),
+           "How impacts at the same time are resolved, for instance in Newton's cradle.", "\"simultaneous\""),
+       optional(
+           "tolerance", number(between(kMinContactTolerance, kMaxContactTolerance), "1"),
+           "Accuracy of contact. The velocities at contacts violate Coulomb's and Newton's laws by at most "
+           "this "
+           "share of the largest speed at which bodies that touch would approach each other without "
+           "contact forces: at rest the speed that gravity gives a body in a step, at an impact the speed "
+           "of the impact. Overlaps up to a thousandth of the tolerance, in sizes of the smaller body, "
+           "remain. When absent, both are as small as rounding allows."),
        optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
        optional(
            "longest_step", number(above(0), "s"),
@@ -182,6 +199,9 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   settings.active = true;
   settings.friction = contact.number("friction");
   settings.restitution = contact.number("restitution");
+  settings.impacts =
+      contact.text("impacts") == "sequential" ? ImpactOrder::sequential : ImpactOrder::simultaneous;
+  if (contact.given("tolerance")) settings.tolerance = contact.number("tolerance");
   settings.between_parts = contact.boolean("between_parts");
   settings.longest_step = contact.number("longest_step");
   settings.interval = contact.number("interval");

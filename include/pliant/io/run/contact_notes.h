@@ -1,4 +1,4 @@
-// Notes of a run about overlaps of parts in contact.
+// Notes of a run about contact: overlaps of parts, and violations of the laws of contact.
 #pragma once
 
 #include <array>
@@ -27,5 +27,9 @@ using TouchingPair = std::array<int, 4>;
 /// the separation. If there are more than ten pairs, only the ten deepest are listed, with the number of the
 /// others. All these pairs are added to `reported`.
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
+
+/// Returns warnings about the largest residual and the largest overlap of a run, if they exceed the tolerance
+/// of contact. settings: those of the run.
+std::vector<std::string> violation_notes(const StepCounters& counters, const ContactSettings& settings);
 
 }  // namespace pliant

@@ -1,0 +1,44 @@
+// Sequential impacts (ImpactOrder::sequential): where several bodies touch, impacts of two bodies follow each
+// other at one instant. The pair with the largest approach speed comes first, until no pair approaches. The
+// paper has no such law.
+#pragma once
+
+#include <vector>
+
+#include <pliant/collision/find_contacts.h>
+#include <pliant/contact/contact_resolution.h>
+
+namespace pliant {
+
+class ImpactSequence {
+ public:
+  /// All arguments must outlive this object.
+  ImpactSequence(const ContactFinder& finder, ContactResolution& resolution)
+      : finder_(finder), resolution_(resolution) {}
+
+  /// Resolves the impacts at some contacts at step.t pair by pair. Each impact satisfies Newton's law and
+  /// Coulomb's law at all contacts of its pair. A contact with Contact::rebound has this rebound in its first
+  /// impact. Pairs that approach equally fast are resolved together, so that symmetric motions stay
+  /// symmetric. h: see ResolvedMotion. min_speed: slower approaches and rebounds are no impacts, m/s. A
+  /// sequence has at most 1000 impacts and ten more for each pair. If pairs still approach afterwards,
+  /// StepCounters::contact_cutoffs grows by one. Without restitution there is no sequence: it would converge
+  /// slowly to impulses that Newton's law at all contacts at once gives directly.
+  void resolve(StepContext& step, const std::vector<Contact>& contacts, double h, double min_speed);
+
+ private:
+  /// The contacts of two bodies.
+  struct Pair {
+    std::vector<Contact> contacts;
+    double approach;  ///< largest approach speed of a contact, m/s
+  };
+  double approach(const State& state, const Contact& contact) const;
+  double approach(const State& state, const Pair& pair) const;
+  std::vector<Pair> pairs_of(const State& state, const std::vector<Contact>& contacts) const;
+  std::vector<Contact> next_impacts(const State& state, double fastest, double min_speed,
+                                    std::vector<Pair>& pairs) const;
+
+  const ContactFinder& finder_;
+  ContactResolution& resolution_;
+};
+
+}  // namespace pliant
