@@ -138,8 +138,8 @@ class Model {
   /// `body` must outlive the model.
   explicit Model(const MultiBody& body);
   /// Prepares some parts of a body, with their joints and loads. parts: their numbers in the body,
-  /// increasing. Joints and loads of other parts are left out; no joint or load may connect them with these
-  /// parts.
+  /// increasing. A joint or load is left out if none of these parts that has coordinates is at it. The parts
+  /// without coordinates at the other joints and loads must be among these parts.
   Model(const MultiBody& body, std::vector<int> parts);
 
   const MultiBody& body() const { return *body_; }
@@ -228,7 +228,8 @@ class Model {
 
   /// Returns the number of a part of the body in this model; -1 if this model does not contain the part.
   int number_of(const Part& part) const;
-  bool contains(const Part* part) const { return part != nullptr && number_of(*part) >= 0; }
+  /// Whether this model contains a part of the body that has coordinates.
+  bool moves(const Part* part) const { return part != nullptr && !part->fixed() && number_of(*part) >= 0; }
   void add_part(Part& part);
   void add_springs();
   void add_forces_and_torques();

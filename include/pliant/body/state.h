@@ -48,8 +48,8 @@ struct CachedContact {
   Vec3<double> force;
 };
 
-/// What the next step of a part continues, if parts step in clusters (simulate/clusters.h). The parts of a
-/// cluster have equal values after a step.
+/// Step length and other results of the last step of a part, with which its next step begins, if parts step
+/// in clusters (simulate/clusters.h). The parts of a cluster have equal values after a step.
 struct StepMemory {
   double h = 0;                 ///< length of the next step, s; 0 before the first step
   double error = 0;             ///< State::error of the last step of its cluster
@@ -78,9 +78,8 @@ struct State {
   /// impulses, so that forces without a cause, for instance of a part wedged between two walls, do not
   /// persist.
   int contact_cache_age = 0;
-  /// Of each part, if the parts step in clusters; else empty. h, error, contact_residual and
-  /// contact_cache_age of the state are then the largest values of all clusters, and h is the length of the
-  /// interval in which the clusters step.
+  /// Of each part, if the parts step in clusters; else empty. The values of this state are then: h the length
+  /// of an interval of the clusters; error, contact_residual and contact_cache_age the largest of all parts.
   std::vector<StepMemory> step_memory;
 
   double time() const { return start + static_cast<double>(step) * h; }

@@ -32,6 +32,9 @@ inline constexpr double kAtRestTolerance = 1e-2;
 /// that gravity gives a body in the step. Then the error is measured by the displacement that the jump causes
 /// in the step, if the step is no longer than longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
+/// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
+/// opened.
+inline constexpr double kMaxLeftGap = 1000;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
@@ -196,12 +199,18 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halve
 /// these contacts for impacts. t: time of the state, s; h: length of the step, s.
 PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t, double h,
                                                      State& state) const {
+  PairKey last{};
+  double gap = 0;
   for (std::size_t k = first; k < record_.contacts.size(); ++k) {
     const Contact& contact = record_.contacts[k];
+    if (contact.a.at_nodes() || contact.b.at_nodes()) continue;
     if (!(record_.impulses[k].dot(contact.normal) > 0) || contact.rebound > 0) continue;
-    const double opening = finder_.velocity(state, contact).dot(contact.normal),
-                 gap = finder_.min_gap(state, t, contact, smaller_size(dynamics_.model(), contact));
-    state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / h});
+    const double max_gap = step_doubling::kMaxLeftGap * resting_.tight_gap(contact);
+    if (k == first || key_of(contact) != last) gap = finder_.min_gap(state, t, contact, max_gap);
+    last = key_of(contact);
+    const double opening = finder_.velocity(state, contact).dot(contact.normal);
+    if (gap < max_gap)
+      state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / h});
   }
 }
 

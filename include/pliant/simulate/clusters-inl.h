@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/contact_stepping.h>
@@ -19,6 +20,8 @@ namespace clusters {
 
 /// Largest number of simulations that are kept for clusters with the same first part.
 inline constexpr std::size_t kMaxKept = 4;
+/// A simulation is kept for this number of intervals, or up to twice as many.
+inline constexpr long kKeptFor = 64;
 /// A time nearer than this to the end of an interval, in intervals, is the end.
 inline constexpr double kAtEnd = 1e-9;
 
@@ -75,7 +78,7 @@ PLIANT_INLINE double Clusters::end_of_interval(double t) const {
 }
 
 PLIANT_INLINE void Clusters::advance(double end) {
-  ++intervals_;
+  if (++intervals_ % clusters::kKeptFor == 0) drop_unused();
   const double t = whole_.time();
   whole_.contact_->wake_driven(t, end - t, whole_.state_);
   predict_travel(end);  // 1 predict where each part can be
@@ -119,54 +122,71 @@ PLIANT_INLINE void Clusters::predict_travel(double end) {
   }
 }
 
-/// Joins the sets of parts that can meet, and of parts that sleep together.
+/// Joins the sets of parts that can meet, and of parts that sleep together. A sleeping part that joins a part
+/// that is awake may wake and reach others, so that this is repeated until no set grows.
 PLIANT_INLINE void Clusters::join_parts_that_meet() {
   const State& state = whole_.state_;
   reached_ = anchors_;
+  std::map<double, int> sleepers;
   for (int i = 0; i < static_cast<int>(state.at_rest.size()); ++i)
-    if (sleeps(state, i)) sets_.unite(i, static_cast<int>(-1 - state.at_rest[at(i)]));
+    if (sleeps(state, i)) sets_.unite(i, sleepers.emplace(state.at_rest[at(i)], i).first->second);
   for (const CachedContact& cached : state.contact_cache)
     if (cached.between[1] >= 0) join(cached.between[0], cached.between[1]);
   tree_.build(boxes_);
   tree_.near_pairs(0, pairs_);
-  for (const auto& [i, j] : pairs_)
-    if (can_meet(i, j)) join(i, j);
+  mark_awake();
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (const auto& [i, j] : pairs_)
+      if (can_meet(i, j)) grown = join(i, j) || grown;
+    if (sleepers.empty()) break;  // all parts that move are awake
+    mark_awake();
+  }
 }
 
-/// Joins two parts that can meet; a part that cannot move is reached by the other.
-PLIANT_INLINE void Clusters::join(int i, int j) {
+/// Marks the sets with a part that is awake.
+PLIANT_INLINE void Clusters::mark_awake() {
+  awake_.assign(boxes_.size(), false);
+  for (int i = 0; i < static_cast<int>(boxes_.size()); ++i)
+    if (whole_.model_.parts()[at(i)].q0 >= 0 && !sleeps(whole_.state_, i)) awake_[at(sets_.root(i))] = true;
+}
+
+/// Joins two parts that can meet; a part that cannot move is reached by the other. Returns whether two sets
+/// have become one.
+PLIANT_INLINE bool Clusters::join(int i, int j) {
   auto moves = [&](int part) { return whole_.model_.parts()[at(part)].q0 >= 0; };
-  if (moves(i) && moves(j))
+  if (moves(i) && moves(j)) {
+    const bool apart = sets_.root(i) != sets_.root(j);
     sets_.unite(i, j);
-  else if (moves(i))
-    reached_.emplace_back(i, j);
-  else if (moves(j))
-    reached_.emplace_back(j, i);
+    return apart;
+  }
+  if (moves(i) || moves(j)) reached_.emplace_back(moves(i) ? i : j, moves(i) ? j : i);
+  return false;
 }
 
 /// Whether two parts whose boxes meet can touch in this interval: their gap at its start is smaller than the
 /// sum of their travels.
 PLIANT_INLINE bool Clusters::can_meet(int i, int j) {
-  const Model& model = whole_.model_;
-  const State& state = whole_.state_;
+  const std::vector<PartModel>& parts = whole_.model_.parts();
   const ContactFinder& finder = whole_.contact_->finder();
-  auto moves = [&](int part) { return model.parts()[at(part)].q0 >= 0; };
-  if (!(moves(i) || moves(j)) || (model.is_motionless(state, i) && model.is_motionless(state, j)))
-    return false;
+  auto moves = [&](int part) { return parts[at(part)].q0 >= 0; };
+  auto is_still = [&](int part) {
+    return moves(part) ? !awake_[at(sets_.root(part))] : parts[at(part)].motion == nullptr;
+  };
+  if (!(moves(i) || moves(j)) || (is_still(i) && is_still(j))) return false;
   if (moves(i) && moves(j) && sets_.root(i) == sets_.root(j)) return false;  // they are joined
   if (!finder.may_touch(i, j)) return false;
   Contact pair;
   pair.a.part = i;
   pair.b.part = j;
   const double travel = travel_[at(i)] + travel_[at(j)];
-  return finder.min_gap(state, state.time(), pair, travel) < travel;
+  return finder.min_gap(whole_.state_, whole_.time(), pair, travel) < travel;
 }
 
 /// Makes a cluster of each set with a part that is awake. Clusters with the same parts as before are kept.
 PLIANT_INLINE void Clusters::divide() {
   const Model& model = whole_.model_;
   const State& state = whole_.state_;
-  std::vector<Cluster> before = std::move(clusters_);
   clusters_.clear();
   std::fill(cluster_of_.begin(), cluster_of_.end(), -1);
   const int n = static_cast<int>(boxes_.size());
@@ -184,18 +204,19 @@ PLIANT_INLINE void Clusters::divide() {
     if (const int number = cluster_of_[at(sets_.root(part))]; number >= 0)
       clusters_[at(number)].parts.push_back(immobile);
   for (Cluster& cluster : clusters_) {
+    const int first = cluster.parts.front();
     std::sort(cluster.parts.begin(), cluster.parts.end());
     cluster.parts.erase(std::unique(cluster.parts.begin(), cluster.parts.end()), cluster.parts.end());
-    Kept& found = kept(cluster.parts);
+    Kept& found = kept(first, cluster.parts);
     cluster.simulation = found.simulation.get();
     cluster.done = std::exchange(found.last_use, intervals_) == intervals_;
   }
 }
 
-/// Returns the simulation of a set of parts. Makes one, in place of the one that was not used for the longest
-/// time if there are many, if the set is new.
-PLIANT_INLINE Clusters::Kept& Clusters::kept(const std::vector<int>& parts) {
-  std::vector<Kept>& all = kept_[at(parts.front())];
+/// Returns the simulation of a set of parts, whose first part with coordinates is `first`. Makes one, in
+/// place of the one that was not used for the longest time if there are many, if the set is new.
+PLIANT_INLINE Clusters::Kept& Clusters::kept(int first, const std::vector<int>& parts) {
+  std::vector<Kept>& all = kept_[at(first)];
   for (Kept& one : all)
     if (one.parts == parts) return one;
   if (all.size() == clusters::kMaxKept)
@@ -205,11 +226,20 @@ PLIANT_INLINE Clusters::Kept& Clusters::kept(const std::vector<int>& parts) {
   return all.back();
 }
 
+/// Drops the simulations that were not used for a while.
+PLIANT_INLINE void Clusters::drop_unused() {
+  for (std::vector<Kept>& all : kept_)
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const Kept& one) { return one.last_use < intervals_ - clusters::kKeptFor; }),
+              all.end());
+}
+
 /// Simulates a cluster to the end of the interval. Returns whether a part has travelled farther than
 /// predicted.
 PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   Simulation& of = *cluster.simulation;
   extract_state(whole_.model_, whole_.state_, of.model_, of.state_);
+  of.forget_counters();  // of a simulation of this interval that was not used
   for (const int part : cluster.parts) turned_[at(part)] = 0;
   cluster.done = true;
   bool farther = false;

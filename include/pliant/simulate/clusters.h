@@ -51,16 +51,18 @@ class Clusters {
   void find_anchors();
   void predict_travel(double end);
   void join_parts_that_meet();
-  void join(int i, int j);
+  void mark_awake();
+  bool join(int i, int j);
   bool can_meet(int i, int j);
   void divide();
-  Kept& kept(const std::vector<int>& parts);
+  Kept& kept(int first, const std::vector<int>& parts);
+  void drop_unused();
   bool simulate(Cluster& cluster, double end);
   bool include_path(const Simulation& of, const State& before, double h);
   void commit(double end);
 
   Simulation& whole_;
-  std::vector<std::vector<Kept>> kept_;  ///< by the number of the first part
+  std::vector<std::vector<Kept>> kept_;  ///< by the number of the first part with coordinates
   const DisjointSets connected_;         ///< parts that joints, springs and torques connect
   std::vector<std::pair<int, int>>
       anchors_;  ///< moving parts, each with a part without coordinates at a joint or load
@@ -72,6 +74,7 @@ class Clusters {
   /// that rotation and deformation cause, m.
   std::vector<double> travel_, turned_;
   std::vector<std::pair<int, int>> pairs_, reached_;  ///< pairs of boxes that meet; (moving, immobile) parts
+  std::vector<bool> awake_;      ///< of each set, by its first part: whether one of its parts is awake
   std::vector<int> cluster_of_;  ///< number of the cluster of each set, by its first part
   BoxTree tree_;
   std::vector<Cluster> clusters_;

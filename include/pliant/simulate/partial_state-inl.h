@@ -58,12 +58,13 @@ PLIANT_INLINE void extract_state(const Model& whole, const State& state, const M
     memory.contact_residual = std::max(memory.contact_residual, of_part.contact_residual);
     memory.contact_cache_age = std::max(memory.contact_cache_age, of_part.contact_cache_age);
     if (state.at_rest.empty()) continue;
-    double rest = state.at_rest[at(numbers[i])];
-    if (rest < 0) {  // parts that sleep together have the number of their first part
-      const auto first = std::lower_bound(numbers.begin(), numbers.end(), static_cast<int>(-1 - rest));
-      rest = -1.0 - static_cast<double>(first - numbers.begin());
-    }
+    const double rest = state.at_rest[at(numbers[i])];
     part.at_rest[i] = rest;
+    if (!(rest < 0)) continue;
+    // Parts that sleep together get the number of the first of them.
+    std::size_t first = 0;
+    while (state.at_rest[at(numbers[first])] != rest) ++first;
+    part.at_rest[i] = -1.0 - static_cast<double>(first);
   }
   part.h = memory.h;
   part.error = memory.error;

@@ -85,6 +85,17 @@ inline void check_contact_cache(const State& state, const Model& model) {
     throw std::invalid_argument("the contact cache of this state is not sorted by the pairs of bodies");
 }
 
+/// Throws std::invalid_argument if a StepMemory of a state is out of range.
+inline void check_step_memory(const State& state) {
+  for (const StepMemory& memory : state.step_memory)
+    if (!(memory.h >= 0 && memory.error >= 0 && memory.contact_residual >= 0 &&
+          memory.contact_cache_age >= 0) ||
+        !std::isfinite(memory.h + memory.error + memory.contact_residual))
+      throw std::invalid_argument(
+          "a step length or another number of the clusters of this state is negative or "
+          "not finite");
+}
+
 }  // namespace simulation
 
 PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads,
@@ -274,12 +285,17 @@ PLIANT_INLINE void Simulation::advance_clusters(double end) {
   }
 }
 
+PLIANT_INLINE void Simulation::forget_counters() {
+  step_counters_ = {};
+  for (PartWorkspace<double>& w : work_.parts) w.counters = {};
+  for (RigidWorkspace& w : work_.rigid) w.counters = {};
+}
+
 /// Adds the counters of a cluster, and its velocities without inertia.
 PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
-  const StepCounters counted = std::exchange(cluster.step_counters_, {});
-  step_counters_ += counted;
-  for (PartWorkspace<double>& w : cluster.work_.parts) absorbed_counters_ += std::exchange(w.counters, {});
-  for (RigidWorkspace& w : cluster.work_.rigid) absorbed_counters_ += std::exchange(w.counters, {});
+  step_counters_ += cluster.step_counters_;
+  absorbed_counters_ += cluster.counters();
+  cluster.forget_counters();
   for (std::size_t i = 0; i < cluster.work_.without_inertia.size(); ++i) {
     if (cluster.work_.without_inertia[i] == 0) continue;
     const PartModel &from = cluster.model_.parts()[i],
@@ -509,6 +525,7 @@ PLIANT_INLINE void Simulation::set_state(State state) {
   if (!contact_) state.contact_cache.clear();
   simulation::check_contact_cache(state, model_);
   if (state.contact_cache.empty()) state.contact_cache_age = 0;
+  simulation::check_step_memory(state);
   if (!clusters_) state.step_memory.clear();
   if (clusters_ && state.step_memory.empty())
     state.step_memory.assign(model_.parts().size(), {0, 0, state.contact_residual, state.contact_cache_age});

@@ -96,6 +96,7 @@ class Simulation {
   void controlled_step(double end);
   void advance_clusters(double end);
   void absorb(Simulation& cluster);
+  void forget_counters();
   void set_method(std::unique_ptr<Integrator> method);
   StepError try_step();
   void estimate_contact_error(long impacts, StepError& result);

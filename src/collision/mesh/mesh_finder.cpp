@@ -23,26 +23,27 @@ constexpr double kMaxDepthInObstacle = 0.25, kMaxStepShare = 0.2;
 
 }  // namespace
 
-MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles)
-    : model_(&model), rules_(model) {
+MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles) : model_(&model) {
   const int n = static_cast<int>(model.parts().size());
+  for (int i = 0; i < n && !rules_; ++i)
+    if (deforms_locally(i)) rules_.emplace(model);
   auto add_mesh = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
   for (int i = 0; i < n; ++i) {
     if (!deforms_locally(i)) continue;
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
-      const ContactRule rule = rules_.on_plane(i, static_cast<int>(k));
+      const ContactRule rule = rules_->on_plane(i, static_cast<int>(k));
       if (!rule.touch) continue;
       add_mesh(i);
       planes_.push_back({i, k, rule});
     }
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      const ContactRule rule = rules_.on_obstacle(i, static_cast<int>(k));
+      const ContactRule rule = rules_->on_obstacle(i, static_cast<int>(k));
       if (!rule.touch) continue;
       add_mesh(i);
       on_obstacles_.push_back({i, k, &obstacles[k], rule});
     }
     for (int j = 0; j < n; ++j) {
-      if (j == i || (j < i && deforms_locally(j)) || !rules_.of_parts(std::min(i, j), std::max(i, j)).touch)
+      if (j == i || (j < i && deforms_locally(j)) || !rules_->of_parts(std::min(i, j), std::max(i, j)).touch)
         continue;
       add_mesh(i);
       add_mesh(j);
@@ -72,7 +73,7 @@ void MeshFinder::each_pair(const State& state, const std::map<int, Thing>& all, 
         (model_->is_motionless(state, one.part) && model_->is_motionless(state, other.part)) ||
         (one.c - other.c).norm() > one.reach + other.reach)
       continue;
-    const ContactRule rule = rules_.of_parts(one.part, other.part);
+    const ContactRule rule = rules_->of_parts(one.part, other.part);
     if (rule.touch) act(one, other, rule);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <pliant/collision/contact.h>
@@ -76,7 +77,7 @@ class MeshFinder {
   std::map<int, ContactMesh> meshes_;  // mesh of each part that needs one
   std::vector<OnPlane> planes_;
   std::vector<OnObstacle> on_obstacles_;
-  ContactRules rules_;
+  std::optional<ContactRules> rules_;  // only if a part deforms locally
 };
 
 }  // namespace pliant
