@@ -19,6 +19,9 @@ constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
 constexpr double kFarthest = 4;
 /// The search ends after a step that is shorter than this (rad, and sizes).
 constexpr double kLastNormalStep = 1e-8;
+/// After kMaxNormalSteps steps that are longer than this (rad, and sizes) there is no common normal nearby:
+/// the search alternates between both sides of a line at which the curvature jumps. Otherwise it has failed.
+constexpr double kStillMoves = 1e-4;
 /// Added to the diagonal of the Hessian, in units of 1 / size, so that the Hessian can be inverted where
 /// points with common normals form a curve.
 constexpr double kStiffness = 1e-9;
@@ -174,6 +177,7 @@ NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNor
   result.b = b.middle;
   FeatureJet of_a = a.jet, of_b = b.jet;
   const double radius_a = a.bound.radius, radius_b = b.bound.radius;
+  double length = 0;  // of the last step
   for (int k = 0; k < kMaxNormalSteps; ++k) {
     const FeatureJet in_b = turned(of_a);
     NormalStep next = step(in_b, of_b, result.normal);
@@ -194,15 +198,15 @@ NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNor
     of_b = b_.evaluate(result.b);
     if ((of_a.x - a.jet.x).norm() > kFarthest * radius_a || (of_b.x - b.jet.x).norm() > kFarthest * radius_b)
       return End::none;
-    if (!(std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_}) < kLastNormalStep))
-      continue;
+    length = std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_});
+    if (!(length < kLastNormalStep)) continue;
     const FeatureJet last = turned(of_a);
     result.x = last.x;
     result.y = of_b.x;
     result.gap = result.normal.dot(last.x - of_b.x);
     return is_least(last, of_b, result) ? End::found : End::none;
   }
-  return End::failed;
+  return length > kStillMoves ? End::none : End::failed;
 }
 
 }  // namespace pliant

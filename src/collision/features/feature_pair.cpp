@@ -23,7 +23,7 @@ constexpr double kShallow = 1e-7;
 constexpr int kEdgeSamples = 3;
 /// The candidates of a pair of parts stay valid while the parts move by at most this relative to each other,
 /// in sizes of the smaller part.
-constexpr double kMargin = 0.05;
+constexpr double kMargin = 0.1;
 /// A pair with more contacts, along a curve on which the distance is constant, keeps this many.
 constexpr std::size_t kMaxOnCurve = 8;
 

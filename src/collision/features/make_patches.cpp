@@ -20,7 +20,7 @@ constexpr double kPatchTurn = 0.5;
 /// Balls are larger than those through the sampled points by this factor.
 constexpr double kBallMargin = 1.1;
 /// Cones are wider than those of the sampled normals by this angle, rad.
-constexpr double kNormalMargin = 0.05;
+constexpr double kNormalMargin = 0.03;
 /// The normals at the border of a patch of a mesh are at this share of the way to the neighbours.
 constexpr double kBorder = 0.6;
 

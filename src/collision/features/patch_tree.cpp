@@ -50,28 +50,6 @@ PatchBound placed(const PatchBound& bound, const RelativePose& pose, const PairR
   return in_b;
 }
 
-/// Returns a bound that contains two others.
-PatchBound united(const PatchBound& one, const PatchBound& other) {
-  PatchBound all;
-  const Vec3<double> d = other.centre - one.centre;
-  const double distance = d.norm();
-  if (distance + other.radius <= one.radius) {
-    all.centre = one.centre;
-    all.radius = one.radius;
-  } else if (distance + one.radius <= other.radius) {
-    all.centre = other.centre;
-    all.radius = other.radius;
-  } else {
-    all.radius = 0.5 * (distance + one.radius + other.radius);
-    all.centre = one.centre + (all.radius - one.radius) / distance * d;
-  }
-  const Vec3<double> sum = one.axis + other.axis;
-  all.axis = sum.squaredNorm() > 0 ? sum.normalized() : one.axis;
-  all.set_angle(std::max(angle_between(all.axis, one.axis) + one.angle,
-                         angle_between(all.axis, other.axis) + other.angle));
-  return all;
-}
-
 }  // namespace
 
 double angle_between(const Vec3<double>& a, const Vec3<double>& b) {
@@ -101,37 +79,49 @@ int PatchTree::build(std::vector<int>& order, std::size_t first, std::size_t las
   }
   auto bound = [&](int k) -> const PatchBound& { return patches_[static_cast<std::size_t>(k)].bound; };
   Eigen::AlignedBox3d box, normals;
+  Vec3<double> sum = Vec3<double>::Zero();
   for (std::size_t k = first; k < last; ++k) {
     box.extend(bound(order[k]).centre);
     normals.extend(bound(order[k]).axis);
+    sum += bound(order[k]).axis;
   }
+  PatchBound all;
+  all.centre = box.center();
+  all.axis = sum.squaredNorm() > 0 ? sum.normalized() : bound(order[first]).axis;
+  double angle = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    const PatchBound& one = bound(order[k]);
+    all.radius = std::max(all.radius, (one.centre - all.centre).norm() + one.radius);
+    angle = std::max(angle, angle_between(one.axis, all.axis) + one.angle);
+  }
+  all.set_angle(angle);
   Eigen::Index axis = 0, normal_axis = 0;
   const double size = box.sizes().maxCoeff(&axis), spread = normals.sizes().maxCoeff(&normal_axis);
-  Eigen::AlignedBox3d whole;
-  for (const Patch& patch : patches_) whole.extend(patch.bound.centre);
-  const bool by_place = 2 * size >= spread * whole.sizes().maxCoeff();
+  const double whole = nodes_.front().bound.radius > 0 ? nodes_.front().bound.radius : all.radius;
+  const bool by_place = size >= spread * whole;
   auto key = [&](int k) { return by_place ? bound(k).centre[axis] : bound(k).axis[normal_axis]; };
   const std::size_t middle = first + (last - first) / 2;
   const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(k); };
   std::nth_element(at(first), at(middle), at(last),
                    [&](int i, int j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
+  nodes_[static_cast<std::size_t>(number)].bound = all;
   const int left = build(order, first, middle), right = build(order, middle, last);
-  nodes_[static_cast<std::size_t>(number)] = {
-      united(nodes_[static_cast<std::size_t>(left)].bound, nodes_[static_cast<std::size_t>(right)].bound),
-      left, right};
+  nodes_[static_cast<std::size_t>(number)].left = left;
+  nodes_[static_cast<std::size_t>(number)].right = right;
   return number;
 }
 
 void PatchTree::find_pairs(const PatchTree& a, const PatchTree& b, const RelativePose& pose,
                            const PairReach& reach, std::vector<PatchPair>& pairs) {
   pairs.clear();
+  auto size = [](const Node& node) { return node.bound.radius * (1 + node.bound.angle); };
   auto visit = [&](const auto& self, int i, int j) -> void {
     const Node &of_a = a.nodes_[static_cast<std::size_t>(i)], &of_b = b.nodes_[static_cast<std::size_t>(j)];
     if (!can_meet(placed(of_a.bound, pose, reach), of_b.bound, reach)) return;
     const bool leaf_a = of_a.left < 0, leaf_b = of_b.left < 0;
     if (leaf_a && leaf_b) {
       pairs.push_back({of_a.right, of_b.right});
-    } else if (leaf_b || (!leaf_a && of_a.bound.radius >= of_b.bound.radius)) {
+    } else if (leaf_b || (!leaf_a && size(of_a) >= size(of_b))) {
       self(self, of_a.left, j);
       self(self, of_a.right, j);
     } else {
