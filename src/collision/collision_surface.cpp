@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "collision/features/feature_pair.h"
 #include "collision/hull/hull.h"
 
 #include <Eigen/Geometry>
@@ -181,6 +182,16 @@ CollisionSurface::CollisionSurface(const Part& part)
   } else {
     thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
   }
+}
+
+CollisionSurface::~CollisionSurface() = default;
+
+const PartPatches* CollisionSurface::rest_patches() const {
+  const ParameterValues<double> rest = part_->parameters().rest();
+  if (!patches_known_ && PartFeatures::exist(*part_, rest))
+    patches_ = std::make_unique<PartPatches>(*part_, rest);
+  patches_known_ = true;
+  return patches_.get();
 }
 
 const CollisionSurface::Samples& CollisionSurface::samples() const {

@@ -1,5 +1,6 @@
-// Contacts of a pair of parts: closed forms, support functions of convex parts, and for all other pairs the
-// lowest points of each part over the other.
+// Contacts of a pair of parts: closed forms, support functions of convex parts, common normals of the
+// features of parts that are not convex, and for all other pairs the lowest points of each part over the
+// other.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -31,6 +32,9 @@ constexpr double kMergeNormal = 0.2;
 /// Two points of one contact, found on the surfaces of both parts, are equally deep if their gaps differ by
 /// less than this, in sizes of the smaller part.
 constexpr double kEqualDepth = 1e-9;
+
+/// Largest depth of a contact between features, in thicknesses of the thinner part.
+constexpr double kMaxDepth = 0.5;
 
 }  // namespace
 
@@ -225,6 +229,31 @@ bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, do
   return true;
 }
 
+/// Appends the contacts of two parts whose shapes never change, from their faces, edges and vertices. Returns
+/// whether this succeeds; if the features of a part are not known or a search fails, nothing is appended.
+bool ContactFinder::find_between_features(int a, int b, const ContactRule& rule, double max_gap,
+                                          std::vector<Contact>& found) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  if (!has_fixed_shape(a) || !has_fixed_shape(b) || (one.axes && other.axes)) return false;
+  const PartPatches *of_a = surfaces_[at(a)]->rest_patches(), *of_b = surfaces_[at(b)]->rest_patches();
+  if (of_a == nullptr || of_b == nullptr) return false;
+  const double thickness = std::min(surfaces_[at(a)]->thickness(), surfaces_[at(b)]->thickness()),
+               size_a = model_->parts()[at(a)].part->size(), size_b = model_->parts()[at(b)].part->size();
+  const RelativePose pose{other.R.transpose() * one.R, other.R.transpose() * (one.c - other.c)};
+  std::vector<CommonNormal>& touches = scratch_->of_features;
+  if (!touch_features(
+          *of_a, *of_b, pose,
+          {max_gap, kMaxDepth * thickness, one_point_distance(thickness), std::min(size_a, size_b)},
+          scratch_->patch_pairs[{a, b}], touches))
+    return false;
+  // Of the two points the one on the smaller part is the contact point, so that the lever arm of a rolling
+  // part is exact.
+  for (const CommonNormal& touch : touches)
+    found.push_back(contact_at(other.c + other.R * (size_b < size_a ? touch.y : touch.x),
+                               other.R * touch.normal, touch.gap, a, b, rule));
+  return true;
+}
+
 /// Appends the contact of a ball and a box if its gap is at most max_gap (m). Returns whether the pair is a
 /// ball and a box.
 bool ContactFinder::find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
@@ -249,9 +278,9 @@ bool ContactFinder::are_apart(int a, int b, double max_gap) const {
   return d.squaredNorm() - extent(one) - extent(other) > max_gap * d.norm();
 }
 
-/// Appends the contacts of a pair of parts. Boxes, balls on boxes and ellipsoids have closed forms, and
-/// convex parts use their support functions. For all others both surfaces are searched; a point found from
-/// both is added once.
+/// Appends the contacts of a pair of parts. Boxes, balls on boxes and ellipsoids have closed forms, convex
+/// parts use their support functions, and other parts their features. Without these both surfaces are
+/// searched; a point found from both is added once.
 void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, max_gap)) return;
@@ -260,6 +289,7 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   if (find_ball_on_box(a, b, rule, max_gap, found)) return;
   if (find_between_hulls(a, b, rule, max_gap, found)) return;
   if (find_deep_overlap(a, b, rule, found)) return;
+  if (find_between_features(a, b, rule, max_gap, found)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();
   theirs.clear();

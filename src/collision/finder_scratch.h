@@ -1,6 +1,7 @@
 // Scratch storage of a ContactFinder. It is kept from call to call.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <pliant/collision/find_contacts.h>
 #include <pliant/collision/mesh/find_on_mesh.h>
 
+#include "collision/features/feature_pair.h"
 #include "collision/hull/hull_pair.h"
 
 namespace pliant {
@@ -67,6 +69,8 @@ struct ContactFinder::Scratch {
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
   std::vector<PairTouch> of_hulls;
+  std::map<std::pair<int, int>, PatchPairs> patch_pairs;  ///< by numbers of the parts
+  std::vector<CommonNormal> of_features;
   std::vector<Vec3<double>> hull_points;
   std::vector<CollisionSurface::LowPoint> low_points;
   std::vector<Material<double>> material{1};

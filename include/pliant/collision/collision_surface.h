@@ -4,6 +4,7 @@
 // (ellipsoid_points.h).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,9 +14,12 @@
 
 namespace pliant {
 
+struct PartPatches;
+
 class CollisionSurface {
  public:
   explicit CollisionSurface(const Part& part);
+  ~CollisionSurface();
 
   /// A height over a plane or over another part, as a function of points of the body frame.
   class Field {
@@ -64,6 +68,9 @@ class CollisionSurface {
   /// Sample points of the rest shape, and a box that contains the surface of the rest shape, body frame, m.
   const Eigen::Matrix3Xd& rest_points() const { return samples().points; }
   const Eigen::AlignedBox3d& rest_box() const { return samples().box; }
+  /// Returns the faces, edges and vertices of the rest shape (src/collision/features), or nullptr if they are
+  /// not known.
+  const PartPatches* rest_patches() const;
   /// Returns the points that support the part: the lowest point, and the outermost points of a level edge
   /// (two) or of a level face (about four), so that boxes stand. No point is higher than max_gap (m). p: the
   /// sample points, as columns in the body frame, m. heights: field.height() at each sample point, m.
@@ -86,6 +93,8 @@ class CollisionSurface {
 
   const Part* part_;
   mutable std::optional<Samples> samples_;
+  mutable std::unique_ptr<PartPatches> patches_;  ///< computed at the first call of rest_patches()
+  mutable bool patches_known_ = false;
   /// Unit of the search, rad: twice the angle between neighbouring sample points of a ball pattern; on a
   /// torus the angle between neighbours around the tube.
   double spacing_;

@@ -1,7 +1,8 @@
 // Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
 // other. Ellipsoids, boxes and balls on boxes have closed forms. Contacts of other undeformed or sheared
-// parts with planes, and with each other if they are convex, follow from support functions. Other contacts
-// are the lowest points of each part over obstacles and over the parts near it.
+// parts with planes, and with each other if they are convex, follow from support functions. Parts that are
+// not convex touch each other at common normals of their faces, edges and vertices. Other contacts are the
+// lowest points of each part over obstacles and over the parts near it.
 #pragma once
 
 #include <memory>
@@ -118,6 +119,8 @@ class ContactFinder {
                           std::vector<Contact>& found) const;
   bool find_between_hulls(int a, int b, const ContactRule& rule, double max_gap,
                           std::vector<Contact>& found) const;
+  bool find_between_features(int a, int b, const ContactRule& rule, double max_gap,
+                             std::vector<Contact>& found) const;
   bool find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
                         std::vector<Contact>& found) const;
   void find_on_pair(int a, int b, const ContactRule& rule, double max_gap, std::vector<Contact>& found) const;

@@ -1,0 +1,212 @@
+#include "common_normal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace pliant {
+
+namespace {
+
+/// After kFullSteps steps all steps are halved, because full steps can alternate between both sides of a line
+/// at which the curvature of a surface jumps.
+constexpr int kMaxNormalSteps = 60, kFullSteps = 8;
+/// Longest step of the normal, rad, and of a point, in radii of its patch.
+constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
+/// The search ends without result if a point is farther from the middle of its patch than this, in radii.
+constexpr double kFarthest = 4;
+/// The search ends after a step that is shorter than this (rad, and sizes).
+constexpr double kLastNormalStep = 1e-8;
+/// After kMaxNormalSteps steps that are longer than this (rad, and sizes) there is no common normal nearby:
+/// the search alternates between both sides of a line at which the curvature jumps. Otherwise it has failed.
+constexpr double kStillMoves = 1e-4;
+/// Added to the diagonal of the Hessian, in units of 1 / size, so that the Hessian can be inverted where
+/// points with common normals form a curve.
+constexpr double kStiffness = 1e-9;
+/// The distance is constant along a curve of points if its second derivative is at most this, in units of 1 /
+/// size.
+constexpr double kConstantDistance = 1e-6;
+/// The normal at an edge or vertex may be outside the normals of the adjacent faces by this angle, rad.
+constexpr double kOnCone = 1e-7;
+
+using Hessian = Eigen::Matrix<double, 6, 6>;
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
+
+/// Returns the second derivatives of n . x by the coordinates.
+Eigen::Matrix2d height_curvature(const FeatureJet& jet, const Vec3<double>& n) {
+  const Vec3<double> w = jet.second.transpose() * n;
+  return (Eigen::Matrix2d() << w[0], w[1], w[1], w[2]).finished();
+}
+
+/// Returns the lengths of the tangents; 1 for those that do not exist.
+Eigen::Vector2d tangent_lengths(const FeatureJet& jet) {
+  Eigen::Vector2d length(1, 1);
+  for (int k = 0; k < jet.dimension; ++k) length[k] = jet.tangents.col(k).norm();
+  return length;
+}
+
+Matrix32 plane_basis(const Vec3<double>& n) {
+  Matrix32 P;
+  P.col(0) = n.unitOrthogonal();
+  P.col(1) = n.cross(P.col(0));
+  return P;
+}
+
+}  // namespace
+
+/// Returns a jet of a with the vectors that the search needs in the frame of b.
+FeatureJet NormalSearch::turned(FeatureJet jet) const {
+  jet.x = pose_(jet.x);
+  jet.tangents = pose_.R * jet.tangents;
+  jet.second = pose_.R * jet.second;
+  jet.normal = pose_.R * jet.normal;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(jet.n_inward); ++k)
+    jet.inward[k] = pose_.R * jet.inward[k];
+  return jet;
+}
+
+Vec3<double> NormalSearch::start(const Patch& a, const Patch& b) const {
+  const Vec3<double> outward = b.bound.axis - pose_.R * a.bound.axis;
+  if (b.jet.dimension == 2 || a.jet.dimension == 2) {
+    Vec3<double> n = Vec3<double>::Zero();
+    if (b.jet.dimension == 2) n += b.jet.normal;
+    if (a.jet.dimension == 2) n -= pose_.R * a.jet.normal;
+    return n.normalized();
+  }
+  const Vec3<double> d = pose_(a.jet.x) - b.jet.x;
+  Vec3<double> n = d;
+  if (a.jet.dimension + b.jet.dimension == 2) {
+    n = Vec3<double>(pose_.R * a.jet.tangents.col(0)).cross(b.jet.tangents.col(0));
+  } else if (a.jet.dimension + b.jet.dimension == 1) {
+    const Vec3<double> along = (a.jet.dimension == 1 ? Vec3<double>(pose_.R * a.jet.tangents.col(0))
+                                                     : Vec3<double>(b.jet.tangents.col(0)))
+                                   .normalized();
+    n -= n.dot(along) * along;
+  }
+  if (!(n.squaredNorm() > 0)) n = outward;
+  return (n.dot(outward) < 0 ? Vec3<double>(-n) : n).normalized();
+}
+
+NormalStep NormalSearch::step(const FeatureJet& a, const FeatureJet& b, const Vec3<double>& n) const {
+  // The unknowns are lengths along the tangents in units of size_, and the turn of n.
+  const Matrix32 P = plane_basis(n);
+  const Eigen::Vector2d of_a = tangent_lengths(a), of_b = tangent_lengths(b);
+  const Vec3<double> d = a.x - b.x;
+  Hessian H = Hessian::Zero();
+  Vec<double, 6> residual = Vec<double, 6>::Zero();
+  auto add_side = [&](const FeatureJet& jet, const Eigen::Vector2d& length, int first, double sign) {
+    const Matrix32 unit = jet.tangents * length.cwiseInverse().asDiagonal();
+    const Eigen::Matrix2d W = height_curvature(jet, n);
+    for (int i = 0; i < 2; ++i) {
+      if (i >= jet.dimension) {
+        H(first + i, first + i) = 1;
+        continue;
+      }
+      for (int j = 0; j < jet.dimension; ++j)
+        H(first + i, first + j) = sign * size_ * W(i, j) / (length[i] * length[j]);
+      H(first + i, first + i) += kStiffness;
+      residual[first + i] = sign * n.dot(unit.col(i));
+    }
+    H.block<2, 2>(first, 4) = sign * unit.transpose() * P;
+    H.block<2, 2>(4, first) = H.block<2, 2>(first, 4).transpose();
+  };
+  add_side(a, of_a, 0, 1);
+  add_side(b, of_b, 2, -1);
+  H(4, 4) = H(5, 5) = -n.dot(d) / size_;
+  residual.tail<2>() = P.transpose() * d / size_;
+  const Vec<double, 6> z = H.partialPivLu().solve(-residual);
+  NormalStep step;
+  step.a = size_ * z.head<2>().cwiseQuotient(of_a);
+  step.b = size_ * z.segment<2>(2).cwiseQuotient(of_b);
+  step.turn = P * z.tail<2>();
+  step.normal = (n + step.turn).normalized();
+  step.gap = n.dot(d) + 0.5 * size_ * residual.dot(z);
+  const Vec3<double> move_a = a.tangents * step.a, move_b = b.tangents * step.b;
+  step.x = a.x + move_a;
+  step.y = b.x + move_b;
+  step.length_a = move_a.norm();
+  step.length_b = move_b.norm();
+  return step;
+}
+
+NormalStep NormalSearch::step(const Patch& a, const Patch& b, const Vec3<double>& n) const {
+  return step(turned(a.jet), b.jet, n);
+}
+
+/// Whether a point with a common normal is a contact: the normal is that of both sides, and the distance is
+/// least there, at least to second order.
+bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const CommonNormal& at) const {
+  if (!a_.is_inside(at.a) || !b_.is_inside(at.b)) return false;
+  if (a.dimension == 2 && a.normal.dot(at.normal) > 0) return false;
+  if (b.dimension == 2 && b.normal.dot(at.normal) < 0) return false;
+  for (const FeatureJet* jet : {&a, &b})
+    for (std::size_t k = 0; k < static_cast<std::size_t>(jet->n_inward); ++k)
+      if ((jet == &a ? 1 : -1) * at.normal.dot(jet->inward[k]) < -kOnCone * jet->inward[k].norm())
+        return false;
+  const int dimension = a.dimension + b.dimension;
+  if (dimension < 2) return at.gap > 0;
+  if (dimension == 2) return true;
+  const Matrix32 P = plane_basis(at.normal);
+  double least = 0;  // second derivative of the distance by a length, times size_
+  if (dimension == 3) {
+    // The edge moves along the face.
+    const FeatureJet &edge = a.dimension == 1 ? a : b, &face = a.dimension == 1 ? b : a;
+    const Eigen::Vector2d t = (P.transpose() * edge.tangents.col(0)).normalized();
+    const Eigen::Vector2d of_face = (P.transpose() * face.tangents).inverse() * t;
+    const double length = edge.tangents.col(0).norm();
+    const double difference = height_curvature(edge, at.normal)(0, 0) / (length * length) -
+                              of_face.dot(height_curvature(face, at.normal) * of_face);
+    least = size_ * (a.dimension == 1 ? 1 : -1) * difference;
+  } else {
+    const Eigen::Matrix2d T_a = (P.transpose() * a.tangents).inverse(),
+                          T_b = (P.transpose() * b.tangents).inverse();
+    const Eigen::Matrix2d K = T_a.transpose() * height_curvature(a, at.normal) * T_a -
+                              T_b.transpose() * height_curvature(b, at.normal) * T_b;
+    const double middle = 0.5 * K.trace();
+    least = size_ * (middle - std::sqrt(std::max(0.0, middle * middle - K.determinant())));
+  }
+  // If the distance is constant along a line to the boundaries, the contacts are at the ends of this line.
+  const bool closed = a_.is_closed(at.a.feature) || b_.is_closed(at.b.feature);
+  return least > (closed ? -kConstantDistance : kConstantDistance);
+}
+
+NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNormal& result) const {
+  result.a = a.middle;
+  result.b = b.middle;
+  FeatureJet of_a = a.jet, of_b = b.jet;
+  const double radius_a = a.bound.radius, radius_b = b.bound.radius;
+  double length = 0;  // of the last step
+  for (int k = 0; k < kMaxNormalSteps; ++k) {
+    const FeatureJet in_b = turned(of_a);
+    NormalStep next = step(in_b, of_b, result.normal);
+    result.gap = next.gap;
+    if (!next.turn.allFinite() || !next.a.allFinite() || !next.b.allFinite()) return End::failed;
+    const double share =
+        std::min({k < kFullSteps ? 1.0 : 0.5, kLongestNormalTurn / next.turn.norm(),
+                  kLongestMove * radius_a / next.length_a, kLongestMove * radius_b / next.length_b});
+    if (share < 1) {
+      next.a *= share;
+      next.b *= share;
+      next.turn *= share;
+    }
+    result.a = a_.moved(result.a, of_a, next.a);
+    result.b = b_.moved(result.b, of_b, next.b);
+    result.normal = (result.normal + next.turn).normalized();
+    of_a = a_.evaluate(result.a);
+    of_b = b_.evaluate(result.b);
+    if ((of_a.x - a.jet.x).norm() > kFarthest * radius_a || (of_b.x - b.jet.x).norm() > kFarthest * radius_b)
+      return End::none;
+    length = std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_});
+    if (!(length < kLastNormalStep)) continue;
+    const FeatureJet last = turned(of_a);
+    result.x = last.x;
+    result.y = of_b.x;
+    result.gap = result.normal.dot(last.x - of_b.x);
+    return is_least(last, of_b, result) ? End::found : End::none;
+  }
+  return length > kStillMoves ? End::none : End::failed;
+}
+
+}  // namespace pliant

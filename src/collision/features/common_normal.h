@@ -1,0 +1,59 @@
+// Common normals of two features. A point x of a and a point y of b with x - y = g n are stationary points of
+//   L(s_a, s_b, n) = n . (x(s_a) - y(s_b)),  |n| = 1,
+// where s_a and s_b are the coordinates of the features. Newton's method finds them. The Hessian of L is
+//   ( n.x''    0       x'^T P )
+//   (   0    -n.y''   -y'^T P )
+//   ( P^T x' -P^T y'   -g     )
+// with a basis P of the plane normal to n. The distance is least at such a point if the block of s_a and s_b
+// is positive definite for all changes with x' ds_a = y' ds_b.
+#pragma once
+
+#include "patch_tree.h"
+
+namespace pliant {
+
+/// Two points with a common normal. Vectors are in the frame of b.
+struct CommonNormal {
+  FeaturePoint a, b;
+  Vec3<double> x, y;    ///< points of a and of b, m
+  Vec3<double> normal;  ///< n, unit vector from b to a
+  double gap;           ///< g, m
+};
+
+/// A step of Newton's method.
+struct NormalStep {
+  Eigen::Vector2d a, b;       ///< changes of s_a and s_b
+  Vec3<double> turn;          ///< change of n, normal to n
+  Vec3<double> normal;        ///< n + turn, unit vector
+  double gap;                 ///< value of L to which the step leads, to second order, m
+  Vec3<double> x, y;          ///< points to which the step leads, to first order, m
+  double length_a, length_b;  ///< lengths of the changes of x and y, m
+};
+
+class NormalSearch {
+ public:
+  /// a, b: the features of two parts; pose: that of a in the frame of b. size: of the smaller part, m.
+  NormalSearch(const PartFeatures& a, const PartFeatures& b, const RelativePose& pose, double size)
+      : a_(a), b_(b), pose_(pose), size_(size) {}
+
+  /// Returns a normal from which the search can start at the middles of two patches.
+  Vec3<double> start(const Patch& a, const Patch& b) const;
+  /// Returns the step from the middles of two patches with the normal n.
+  NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
+  /// How a search ends: at a point with a common normal at which the distance is least; at another point, or
+  /// too far from its start; or without result. Then result.gap is about the last gap of the search.
+  enum class End { found, none, failed };
+  /// Searches from the middles of two patches and the normal result.normal.
+  End search(const Patch& a, const Patch& b, CommonNormal& result) const;
+
+ private:
+  FeatureJet turned(FeatureJet jet) const;
+  NormalStep step(const FeatureJet& a, const FeatureJet& b, const Vec3<double>& n) const;
+  bool is_least(const FeatureJet& a, const FeatureJet& b, const CommonNormal& at) const;
+
+  const PartFeatures &a_, &b_;
+  const RelativePose& pose_;
+  double size_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,176 @@
+#include "feature_pair.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+namespace pliant {
+
+namespace {
+
+/// The first step of Newton's method decides whether two patches are searched. It must lead to points within
+/// kFirstMove radii of the patches, and to a normal within kFirstTurn angles of their cones plus kTurnSlack
+/// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
+constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
+/// Two patches are not searched if their middles are within kCovered radii of a known contact, or if the
+/// first step leads to points within kLeadsTo radii of it.
+constexpr double kCovered = 1.5, kLeadsTo = 1.2;
+/// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
+constexpr double kOneContactCosine = 0.98;
+/// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
+constexpr double kShallow = 1e-7;
+/// Number of points of an edge in this test, on each side of the contact; their distance is the overlap.
+constexpr int kEdgeSamples = 3;
+/// The candidates of a pair of parts stay valid while the parts move by at most this relative to each other,
+/// in sizes of the smaller part.
+constexpr double kMargin = 0.1;
+/// A pair with more contacts, along a curve on which the distance is constant, keeps this many.
+constexpr std::size_t kMaxOnCurve = 8;
+
+/// Adds a contact; of contacts that are one, the deepest is kept.
+void add_contact(const CommonNormal& at, double one_point, std::vector<CommonNormal>& found) {
+  const auto twin = std::find_if(found.begin(), found.end(), [&](const CommonNormal& other) {
+    return (at.x - other.x).norm() < one_point && at.normal.dot(other.normal) > kOneContactCosine;
+  });
+  if (twin == found.end())
+    found.push_back(at);
+  else if (at.gap < twin->gap)
+    *twin = at;
+}
+
+/// Keeps the deepest contact and those that are farthest apart.
+void keep_outermost(std::vector<CommonNormal>& found) {
+  std::iter_swap(found.begin(),
+                 std::min_element(found.begin(), found.end(),
+                                  [](const auto& one, const auto& other) { return one.gap < other.gap; }));
+  for (std::size_t n = 1; n < kMaxOnCurve; ++n) {
+    const auto kept = found.begin() + static_cast<std::ptrdiff_t>(n);
+    auto distance = [&](const CommonNormal& at) {
+      double least = (at.x - found[0].x).norm();
+      for (auto other = found.begin() + 1; other < kept; ++other)
+        least = std::min(least, (at.x - other->x).norm());
+      return least;
+    };
+    std::iter_swap(kept, std::max_element(kept, found.end(), [&](const auto& one, const auto& other) {
+                     return distance(one) < distance(other);
+                   }));
+  }
+  found.resize(kMaxOnCurve);
+}
+
+/// The search for the contacts of one pair of parts.
+class PairSearch {
+ public:
+  PairSearch(const PartPatches& a, const PartPatches& b, const RelativePose& pose,
+             const FeatureLimits& limits, std::vector<CommonNormal>& known)
+      : a_(a),
+        b_(b),
+        pose_(pose),
+        limits_(limits),
+        search_(a.features, b.features, pose, limits.size),
+        known_(known) {
+    known_.clear();
+  }
+
+  /// Searches two patches and adds a contact to `found`. Returns false if the search fails.
+  bool add(const Patch& a, const Patch& b, std::vector<CommonNormal>& found) {
+    if (is_known(a, b, pose_(a.bound.centre), b.bound.centre, kCovered)) return true;
+    CommonNormal at;
+    at.normal = search_.start(a, b);
+    const NormalStep first = search_.step(a, b, at.normal);
+    if (!can_lead_to_contact(a, b, first) || is_known(a, b, first.x, first.y, kLeadsTo)) return true;
+    const NormalSearch::End end = search_.search(a, b, at);
+    if (end != NormalSearch::End::found) return end == NormalSearch::End::none || !is_within_limits(at.gap);
+    known_.push_back(at);
+    if (is_within_limits(at.gap) && (at.gap > -kShallow * limits_.size || is_overlap(at)))
+      add_contact(at, limits_.one_point, found);
+    return true;
+  }
+
+ private:
+  bool is_within_limits(double gap) const { return gap <= limits_.max_gap && gap >= -limits_.max_depth; }
+  /// Whether points x of a and y of b are within some radii of a known contact of the same features.
+  bool is_known(const Patch& a, const Patch& b, const Vec3<double>& x, const Vec3<double>& y,
+                double radii) const {
+    return std::any_of(known_.begin(), known_.end(), [&](const CommonNormal& at) {
+      return at.a.feature == a.middle.feature && at.b.feature == b.middle.feature &&
+             (at.x - x).norm() <= radii * a.bound.radius && (at.y - y).norm() <= radii * b.bound.radius;
+    });
+  }
+  /// Whether the first step leads to a possible contact.
+  bool can_lead_to_contact(const Patch& a, const Patch& b, const NormalStep& first) const {
+    const double slack = kGapSlack * (a.bound.radius + b.bound.radius) + kGapRounding * limits_.size;
+    if (!(first.gap <= limits_.max_gap + slack && first.gap >= -limits_.max_depth - slack)) return false;
+    // Two vertices, or a vertex and an edge, do not touch where parts overlap.
+    if (a.jet.dimension + b.jet.dimension < 2 && first.gap < 0) return false;
+    auto is_turned = [&](const Vec3<double>& normal, const PatchBound& bound) {
+      return angle_between(normal, bound.axis) > kFirstTurn * bound.angle + kTurnSlack;
+    };
+    if (is_turned(first.normal, b.bound) || is_turned(pose_.R.transpose() * -first.normal, a.bound))
+      return false;
+    return first.length_a <= kFirstMove * a.bound.radius && first.length_b <= kFirstMove * b.bound.radius;
+  }
+  /// Whether the parts overlap at a contact with a negative gap. The surfaces of separate parts can have
+  /// common normals with negative gaps, too, because an acute edge has more normals than directions into the
+  /// part.
+  bool is_overlap(const CommonNormal& at) const {
+    auto in_a = [&](const Vec3<double>& p) {
+      return a_.features.contains(pose_.R.transpose() * (p - pose_.d));
+    };
+    auto in_b = [&](const Vec3<double>& p) { return b_.features.contains(p); };
+    const int of_a = a_.features.dimension(at.a.feature), of_b = b_.features.dimension(at.b.feature);
+    if (of_a == 2 && of_b == 2) return in_a(at.y) && in_b(at.x);
+    if (of_a < of_b) return in_b(at.x);
+    if (of_b < of_a) return in_a(at.y);
+    // Of two edges that cross, one enters the other part near the contact.
+    auto enters = [&](const PartFeatures& features, const FeaturePoint& point, const auto& in_other) {
+      const FeatureJet jet = features.evaluate(point);
+      const double step = at.gap / jet.tangents.col(0).norm();
+      for (int k = -kEdgeSamples; k <= kEdgeSamples; ++k) {
+        const FeaturePoint near = features.moved(point, jet, {k * step, 0});
+        if (features.is_inside(near) && in_other(features.evaluate(near).x)) return true;
+      }
+      return false;
+    };
+    return enters(a_.features, at.a, [&](const Vec3<double>& p) { return in_b(pose_(p)); }) ||
+           enters(b_.features, at.b, in_a);
+  }
+
+  const PartPatches &a_, &b_;
+  const RelativePose& pose_;
+  const FeatureLimits& limits_;
+  NormalSearch search_;
+  std::vector<CommonNormal>& known_;  // all that have been found, also beyond the limits
+};
+
+}  // namespace
+
+void PatchPairs::update(const PartPatches& a, const PartPatches& b, const RelativePose& now,
+                        const FeatureLimits& limits) {
+  const double margin = kMargin * limits.size, turn = margin / a.tree.radius();
+  const double turned = (now.R - pose.R).norm();
+  if (max_gap >= limits.max_gap && max_gap <= limits.max_gap + margin && turned <= turn &&
+      (now.d - pose.d).norm() + turned * a.tree.radius() <= margin)
+    return;
+  pose = now;
+  max_gap = limits.max_gap + 0.5 * margin;
+  PatchTree::find_pairs(a.tree, b.tree, pose, {max_gap, limits.max_depth, margin, turn}, pairs);
+}
+
+bool touch_features(const PartPatches& a, const PartPatches& b, const RelativePose& pose,
+                    const FeatureLimits& limits, PatchPairs& candidates, std::vector<CommonNormal>& found) {
+  found.clear();
+  candidates.update(a, b, pose, limits);
+  PairSearch search(a, b, pose, limits, candidates.known);
+  const PairReach reach{limits.max_gap, limits.max_depth, 0, 0};
+  for (const PatchPair& pair : candidates.pairs) {
+    if (!PatchTree::can_touch(a.tree, b.tree, pose, reach, pair)) continue;
+    if (!search.add(a.tree.patches()[static_cast<std::size_t>(pair.a)],
+                    b.tree.patches()[static_cast<std::size_t>(pair.b)], found))
+      return false;
+  }
+  if (found.size() > kMaxOnCurve) keep_outermost(found);
+  return true;
+}
+
+}  // namespace pliant

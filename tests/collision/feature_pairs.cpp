@@ -1,0 +1,263 @@
+// Contacts of pairs in which a part is not convex. The least gap is the least distance of densely sampled
+// surfaces, both surfaces have the contact normal at the contact, and contacts depend neither on the order of
+// the parts nor on earlier searches. Contacts of parts that lie on each other are the corners or ends of
+// their common face or edge.
+#include "catch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <pliant/collision/find_contacts.h>
+#include <pliant/part/mesh/surface.h>
+#include <pliant/part/registry.h>
+
+#include "draws.h"
+#include "solid_kind.h"
+#include "worst.h"
+
+namespace feature_pairs_test {
+
+using namespace pliant;
+using test::Draws;
+using test::random_rotation;
+using test::Worst;
+using Kind = test::SolidKind;
+
+namespace {
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all{
+      {"torus", "supertoroid", {}, {{"a1", 0.02}, {"a2", 0.02}, {"a3", 0.02}, {"a4", 3}}, true},
+      {"oval torus", "supertoroid", {}, {{"a1", 0.02}, {"a2", 0.03}, {"a3", 0.025}, {"a4", 3}}, true},
+      {"supertoroid",
+       "supertoroid",
+       {},
+       {{"a1", 0.02}, {"a2", 0.02}, {"a3", 0.03}, {"a4", 3}, {"eps1", 0.8}, {"eps2", 1.2}},
+       true},
+      {"bent capsule", "capsule", {"bend"}, {{"r", 0.05}, {"l", 0.08}, {"bend.angle", 0.5}}, true},
+      {"banana", "ellipsoid", {"bend"}, {{"a1", 0.04}, {"a2", 0.04}, {"a3", 0.2}, {"bend.angle", 1.2}}, true},
+      {"twisted ellipsoid",
+       "ellipsoid",
+       {"twist"},
+       {{"a1", 0.1}, {"a2", 0.04}, {"a3", 0.2}, {"twist.angle", 1.2}},
+       true},
+      {"twisted box", "box", {"twist"}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.08}, {"twist.angle", 0.5}}},
+      {"bent cylinder",
+       "cylinder",
+       {"bend"},
+       {{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.1}, {"bend.angle", 0.7}}}};
+  return all;
+}
+
+/// Two solids in a scene without gravity.
+struct Pair {
+  Pair(const Kind& a, const Kind& b)
+      : part_a(body.add(make_part("a", a.shape, a.chain, 1000)).rest(a.rest)),
+        part_b(body.add(make_part("b", b.shape, b.chain, 1000)).rest(b.rest)) {
+    body.contact.between_parts = true;
+  }
+  MultiBody body;
+  Part &part_a, &part_b;
+};
+
+Eigen::Matrix3Xd surface_points(const Part& part) {
+  return part.s(Surface(part, 8).material(), part.parameters().rest());
+}
+
+/// Returns the least distance of points of two surfaces, m, and the difference of these two points.
+struct Nearest {
+  double distance = std::numeric_limits<double>::infinity();
+  Vec3<double> difference = Vec3<double>::Zero();
+};
+Nearest nearest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  Nearest best;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    Eigen::Index j = 0;
+    const double square = (b.colwise() - a.col(i)).colwise().squaredNorm().minCoeff(&j);
+    if (square < best.distance * best.distance) best = {std::sqrt(square), b.col(j) - a.col(i)};
+  }
+  return best;
+}
+
+/// Places the parts at random so that samples of their surfaces are about `apart` (m) apart. Returns the
+/// distance of these samples.
+double place_near(Pair& pair, Draws& draws, double apart) {
+  const Eigen::Quaterniond R_a = random_rotation(draws), R_b = random_rotation(draws);
+  const Eigen::Matrix3Xd a = R_a.toRotationMatrix() * surface_points(pair.part_a),
+                         b = R_b.toRotationMatrix() * surface_points(pair.part_b);
+  Vec3<double> c = 0.6 * draws.vector(1).normalized();
+  for (int k = 0; k < 6; ++k) {
+    const Nearest now = nearest(a, b.colwise() + c);
+    c -= (now.distance - apart) * now.difference.normalized();
+  }
+  pair.part_a.place({0, 0, 0}, R_a);
+  pair.part_b.place(c, R_b);
+  return nearest(a, b.colwise() + c).distance;
+}
+
+std::vector<Contact> contacts_of(Pair& pair, double max_gap) {
+  const Model model(pair.body);
+  return ContactFinder(model).find(model.initial_state(), 0, max_gap);
+}
+
+double least_gap(const std::vector<Contact>& found) {
+  double gap = 1;
+  for (const Contact& contact : found) gap = std::min(gap, contact.gap);
+  return gap;
+}
+
+}  // namespace
+
+TEST_CASE("the least gap of two solids that are not convex is the least distance of their surfaces",
+          "[contact]") {
+  constexpr double kApart = 0.01;
+  Draws draws(5);
+  for (const Kind& a : kinds())
+    for (const Kind& b : kinds()) {
+      CAPTURE(a.name, b.name);
+      Worst above, below;
+      for (int trial = 0; trial < 3; ++trial) {
+        Pair pair(a, b);
+        const double sampled = place_near(pair, draws, kApart);
+        const double gap = least_gap(contacts_of(pair, 2 * kApart));
+        above.note(gap - sampled);
+        below.note(sampled - gap);
+      }
+      CHECK(above < 1e-12);
+      CHECK(below < 2.5e-3);  // the distance of samples from each other is about 1 cm
+    }
+}
+
+TEST_CASE(
+    "smooth solids that are not convex touch with opposite normals, and with no gap after their gap is "
+    "closed",
+    "[contact]") {
+  Draws draws(6);
+  for (const Kind& a : kinds())
+    for (const Kind& b : kinds()) {
+      if (!a.is_smooth || !b.is_smooth) continue;
+      CAPTURE(a.name, b.name);
+      Worst gaps, turned;
+      for (int trial = 0; trial < 5; ++trial) {
+        Pair pair(a, b);
+        place_near(pair, draws, 0.005);
+        const std::vector<Contact> apart = contacts_of(pair, 0.01);
+        REQUIRE(!apart.empty());
+        const Contact& first =
+            *std::min_element(apart.begin(), apart.end(),
+                              [](const Contact& one, const Contact& other) { return one.gap < other.gap; });
+        pair.part_a.place(pair.part_a.c0() - first.gap * first.normal, pair.part_a.R0());
+        const std::vector<Contact> found = contacts_of(pair, 1e-3);
+        double closed = 1;
+        for (const Contact& contact : found) closed = std::min(closed, std::abs(contact.gap));
+        gaps.note(closed);
+        for (const Contact& contact : found) {
+          if (std::abs(contact.gap) > 1e-9) continue;
+          const ParameterValues<double> of_a = pair.part_a.parameters().rest(),
+                                        of_b = pair.part_b.parameters().rest();
+          turned.note(
+              (pair.part_a.R0() * pair.part_a.normal(contact.a.material, of_a) + contact.normal).norm());
+          turned.note(
+              (pair.part_b.R0() * pair.part_b.normal(contact.b.material, of_b) - contact.normal).norm());
+        }
+      }
+      CHECK(gaps < 1e-11);
+      CHECK(turned < 1e-6);
+    }
+}
+
+TEST_CASE("contacts of two solids that are not convex do not depend on the order of the parts", "[contact]") {
+  Draws draws(7);
+  for (const Kind& a : kinds())
+    for (const Kind& b : kinds()) {
+      CAPTURE(a.name, b.name);
+      Worst difference;
+      for (int trial = 0; trial < 2; ++trial) {
+        Pair pair(a, b), exchanged(b, a);
+        place_near(pair, draws, 0.004);
+        exchanged.part_a.place(pair.part_b.c0(), pair.part_b.R0());
+        exchanged.part_b.place(pair.part_a.c0(), pair.part_a.R0());
+        const std::vector<Contact> found = contacts_of(pair, 0.006), other = contacts_of(exchanged, 0.006);
+        REQUIRE(found.size() == other.size());
+        for (const Contact& one : found) {
+          double least = 1;
+          for (const Contact& two : other)
+            least = std::min(least, std::abs(one.gap - two.gap) + (one.normal + two.normal).norm());
+          difference.note(least);
+        }
+      }
+      CHECK(difference < 1e-7);
+    }
+}
+
+TEST_CASE("contacts of solids that are not convex do not depend on earlier searches", "[contact]") {
+  Draws draws(8);
+  for (const Kind& kind : kinds()) {
+    CAPTURE(kind.name);
+    Pair pair(kind, kinds().front());
+    place_near(pair, draws, 0.004);
+    const Model model(pair.body);
+    const State state = model.initial_state();
+    const ContactFinder finder(model), fresh(model);
+    State moved = state;
+    for (int k = 0; k < 20; ++k) {  // small motions, for which candidates of the search are kept
+      moved.q.head<3>() += draws.vector(1e-3);
+      finder.find(moved, 0, 0.006);
+    }
+    const std::vector<Contact> found = finder.find(state, 0, 0.006), expected = fresh.find(state, 0, 0.006);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      CHECK(found[k].gap == expected[k].gap);
+      CHECK(found[k].x == expected[k].x);
+      CHECK(found[k].normal == expected[k].normal);
+    }
+  }
+}
+
+TEST_CASE("solids that are not convex lie on each other on several points around the middle", "[contact]") {
+  const Kind torus = kinds()[0], twisted_box = kinds()[6];
+  const Kind box{"box", "box", {}, {{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}};
+  struct Stack {
+    const Kind &lower, &upper;
+    double height;  ///< of the upper origin above the lower one, m
+  };
+  for (const Stack& stack : {Stack{twisted_box, twisted_box, 0.16}, Stack{torus, torus, 0.04},
+                             Stack{box, torus, 0.12}, Stack{box, twisted_box, 0.18}}) {
+    CAPTURE(stack.lower.name, stack.upper.name);
+    Pair pair(stack.lower, stack.upper);
+    pair.part_a.place({0, 0, 0});
+    pair.part_b.place({0, 0, stack.height});
+    const std::vector<Contact> found = contacts_of(pair, 1e-9);
+    CHECK(found.size() >= 4);
+    CHECK(found.size() <= 8);
+    Vec3<double> least = Vec3<double>::Zero(), most = least;
+    for (const Contact& contact : found) {
+      CHECK(std::abs(contact.gap) < 1e-12);
+      CHECK((contact.normal + Vec3<double>::UnitZ()).norm() < 1e-9);
+      least = least.cwiseMin(contact.x);
+      most = most.cwiseMax(contact.x);
+    }
+    CHECK((-least).head<2>().minCoeff() > 0.04);
+    CHECK(most.head<2>().minCoeff() > 0.04);
+  }
+}
+
+TEST_CASE("edges of separate solids that pass each other do not touch", "[contact]") {
+  // Two wedges lean away from each other. The common normal of their edges has a negative gap.
+  const Kind wedge{"wedge",
+                   "box",
+                   {"taper", "twist"},
+                   {{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}, {"taper.tx", -0.9}, {"twist.angle", 0.3}}};
+  Draws draws(9);
+  int apart = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Pair pair(wedge, wedge);
+    if (place_near(pair, draws, 0.02) < 0.015) continue;
+    ++apart;
+    CHECK(least_gap(contacts_of(pair, 1e-3)) == 1);
+  }
+  CHECK(apart > 10);
+}
+
+}  // namespace feature_pairs_test
