@@ -57,6 +57,26 @@ std::vector<std::vector<int>> groups(const Simulation& simulation) {
   return groups;
 }
 
+/// Adds two pendulums and a ball on a spring to one fixed ball, and a fixed table with a box that slides.
+void add_machine(MultiBody& body) {
+  const Part& hub = ball(body, "hub", {30, 0, 2}).fix();
+  for (const int i : {0, 1}) {
+    const double side = i == 0 ? 1 : -1;
+    const Part& bob = ball(body, "bob" + std::to_string(i), {30 + 0.2 * side, 0, 2}, {0, 0.3 + 0.2 * i, 0});
+    body.ball("pivot" + std::to_string(i), point(hub, 0, i * kPi), point(bob, 0, (1 - i) * kPi));
+  }
+  body.spring("spring", point(hub, -kPi / 2, 0), point(ball(body, "hung", {30, 0, 1.2}), kPi / 2, 0), 50, 0.1,
+              0.4);
+  body.add<Primitive<Box>>("table").rest({{"a1", 1}, {"a2", 1}, {"a3", 0.1}}).place({30, 9, 1}).fix();
+  body.add<Primitive<Box>>("slider")
+      .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+      .place({30, 9, 1.2})
+      .velocity({1, 0, 0}, {0, 0, 0});
+  body.contact.groups.push_back({"bobs", {"bob0", "bob1"}});
+  body.contact.pairs.push_back({"bobs", "bobs", true, 0.1, 0.9});
+  body.contact.pairs.push_back({"slider", "table", true, 0.2});
+}
+
 /// A method and a tolerance.
 struct Way {
   const char* integrator;
@@ -87,19 +107,25 @@ TEST_CASE("a cluster has the same bits beside any others, in any order", "[clust
     for (MultiBody* body : {&few, &many, &reversed}) add_floor(*body, 0.3, 0.4);
     ball(few, "witness", {-9, 0, 5});
     add_tumblers(few, 0);
+    add_machine(few);
     add_falling_balls(few, 7, 0.4);
     add_tumblers(many, 0);
+    add_machine(many);
     ball(many, "witness", {-9, 0, 5});
     add_falling_balls(many, 12);
     add_falling_balls(reversed, 12);
     ball(reversed, "witness", {-9, 0, 5});
+    add_machine(reversed);
     add_tumblers(reversed, 0);
     Simulation one(few, way.integrator, 1, way.tolerance), two(many, way.integrator, 1, way.tolerance),
         three(reversed, way.integrator, 1, way.tolerance);
     for (Simulation* simulation : {&one, &two, &three}) advance_to(*simulation, 0.6);
     REQUIRE(two.clusters() != nullptr);
     CHECK(two.clusters()->parts().size() >= 13);
-    for (const char* name : {"box0", "box1", "witness"}) {
+    for (int joint = 0; joint < 2; ++joint) CHECK(two.model().gap(two.state(), joint) < 1e-12);
+    // The slider stops after v^2 / (2 mu g) on the table.
+    CHECK(std::abs(coordinates(two, "slider")[0] - 30 - 1 / (2 * 0.2 * 9.81)) < 0.1 * way.tolerance);
+    for (const char* name : {"box0", "box1", "witness", "bob0", "bob1", "hung", "slider"}) {
       INFO(name);
       CHECK(coordinates(one, name) == coordinates(two, name));
       CHECK(coordinates(one, name) == coordinates(three, name));
@@ -224,6 +250,31 @@ TEST_CASE("sleeping clusters are not simulated, and wake when a body comes", "[c
   advance_to(simulation, 2);
   CHECK(coordinates(simulation, "sleeper")[0] > 0.01);
   CHECK(coordinates(simulation, "other")[0] > 0.21);
+}
+
+TEST_CASE("a sleeping body that is hit still rests on the fixed body below it", "[clusters]") {
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 0.5;
+  body.contact.sleep = Sleep{1e-3, 0.02};
+  body.add<Primitive<Box>>("table").rest({{"a1", 5}, {"a2", 1}, {"a3", 0.1}}).place({0, 0, -0.1}).fix();
+  for (const int i : {0, 1})  // they sleep one by one
+    body.add<Primitive<Box>>("box" + std::to_string(i))
+        .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+        .place({0.2001 * i, 0, 0.1});
+  ball(body, "shot", {-2.3, 0, 0.15}, {10, 0, -1});
+  add_falling_balls(body, 7);
+  Simulation simulation(body, "auto", 1, 1e-4);
+  advance_to(simulation, 0.2);
+  CHECK(sleeps(simulation.state(), 1));
+  CHECK(sleeps(simulation.state(), 2));
+  double lowest = 1;
+  while (simulation.time() < 0.4) {
+    simulation.step_up_to(0.4);
+    for (const char* box : {"box0", "box1"}) lowest = std::min(lowest, coordinates(simulation, box)[2]);
+  }
+  CHECK(coordinates(simulation, "box1")[0] > 0.3);
+  CHECK(lowest > 0.1 - 1e-5);
 }
 
 TEST_CASE("a part of a state returns to the whole state unchanged", "[clusters]") {

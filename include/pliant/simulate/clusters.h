@@ -69,9 +69,9 @@ class Clusters {
   long intervals_ = 0;
   // Of the present interval:
   DisjointSets sets_;                       ///< connected parts, and parts that can meet
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< a box for each part that contains it all the time, m
-  /// Of each part: bound of the distance of any of its points from the place at the start, and the part of it
-  /// that rotation and deformation cause, m.
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< an estimate of the box of each part's path, m
+  /// Of each part: an estimate of the largest distance of its points from their places at the start, and the
+  /// share of it by rotation and deformation, m.
   std::vector<double> travel_, turned_;
   std::vector<std::pair<int, int>> pairs_, reached_;  ///< pairs of boxes that meet; (moving, immobile) parts
   std::vector<bool> awake_;      ///< of each set, by its first part: whether one of its parts is awake
