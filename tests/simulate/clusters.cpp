@@ -209,23 +209,24 @@ TEST_CASE("a part with prescribed motion is in the cluster of a body that it rea
 }
 
 TEST_CASE("a resumed state continues with the same bits", "[clusters]") {
-  for (const Way& way : kWays) {
-    INFO(way.integrator << " " << way.tolerance);
-    MultiBody body, again;
-    for (MultiBody* each : {&body, &again}) {
-      add_floor(*each, 0.5, 0.2);
-      add_tumblers(*each, 0);
-      add_falling_balls(*each, 8);
-      each->contact.sleep = Sleep{1e-2, 0.05};
+  for (const Way& way : kWays)
+    for (const double stop : {0.11, 0.3}) {  // in flight, and with contacts
+      INFO(way.integrator << " " << way.tolerance << " at " << stop);
+      MultiBody body, again;
+      for (MultiBody* each : {&body, &again}) {
+        add_floor(*each, 0.5, 0.2);
+        add_tumblers(*each, each == &body ? 0 : 0.2);
+        add_falling_balls(*each, 8, each == &body ? 0.15 : 0.2);
+        each->contact.sleep = Sleep{1e-2, 0.05};
+      }
+      Simulation simulation(body, way.integrator, 1, way.tolerance);
+      advance_to(simulation, stop);
+      Simulation resumed(again, way.integrator, 1, way.tolerance);
+      advance_to(resumed, 0.4);  // another motion, with other clusters
+      resumed.set_state(simulation.state());
+      for (Simulation* each : {&simulation, &resumed}) advance_to(*each, 0.8);
+      CHECK(hash(simulation.state()) == hash(resumed.state()));
     }
-    Simulation simulation(body, way.integrator, 1, way.tolerance);
-    advance_to(simulation, 0.3);
-    Simulation resumed(again, way.integrator, 1, way.tolerance);
-    advance_to(resumed, 0.1);  // keeps simulations of other clusters
-    resumed.set_state(simulation.state());
-    for (Simulation* each : {&simulation, &resumed}) advance_to(*each, 0.8);
-    CHECK(hash(simulation.state()) == hash(resumed.state()));
-  }
 }
 
 TEST_CASE("sleeping clusters are not simulated, and wake when a body comes", "[clusters]") {
@@ -248,7 +249,18 @@ TEST_CASE("sleeping clusters are not simulated, and wake when a body comes", "[c
   CHECK(after.steps - before.steps == 13);  // 13 intervals of 1/128 s end from 0.5 s to 0.6 s
   CHECK(after.rejected == before.rejected);
   advance_to(simulation, 2);
-  CHECK(coordinates(simulation, "sleeper")[0] > 0.01);
+  // The same three balls alone, as one set of bodies.
+  MultiBody alone;
+  add_floor(alone, 0.5, 0);
+  ball(alone, "sleeper", {0, 0, 0.1});
+  ball(alone, "other", {0.2, 0, 0.1});
+  ball(alone, "visitor", {-3, 0, 0.1}, {2, 0, 0});
+  Simulation reference(alone, "auto", 1, 1e-4);
+  advance_to(reference, 2);
+  for (const char* name : {"sleeper", "other", "visitor"}) {
+    INFO(name);
+    CHECK(coordinates(simulation, name)[0] == Approx(coordinates(reference, name)[0]).margin(1e-4));
+  }
   CHECK(coordinates(simulation, "other")[0] > 0.21);
 }
 
@@ -303,10 +315,23 @@ TEST_CASE("a part of a state returns to the whole state unchanged", "[clusters]"
       back.v.segment(first.v0, part.v.size()).setZero();
       for (const int i : numbers) back.at_rest[at(i)] = 7;
       if (numbers.size() == 4) back.contact_cache.clear();
+      for (const int i : numbers) back.step_memory[at(i)] = {};
+      std::fill(back.joints.begin(), back.joints.end(), JointMode::off);
       insert_state(some, part, simulation.model(), back);
+      if (numbers.size() == 4) back.joints = state.joints;  // the joint belongs to the others
       CHECK(hash(back) == hash(state));
     }
   }
+  State mixed = simulation.state(), part = Model(body, {0, 1}).initial_state();
+  mixed.step_memory[0] = {1e-3, 0.5, 1e-9, 3};
+  mixed.step_memory[1] = {2e-3, 0.2, 1e-8, 4};
+  extract_state(simulation.model(), mixed, Model(body, {0, 1}), part);
+  CHECK(part.h == 1e-3);
+  CHECK(part.error == 0.5);
+  CHECK(part.contact_residual == 1e-8);
+  CHECK(part.contact_cache_age == 4);
+  mixed.step_memory[1].h = -1;
+  CHECK_THROWS_AS(simulation.set_state(mixed), std::invalid_argument);
 }
 
 }  // namespace clusters_test

@@ -165,12 +165,11 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
   const Pairs at_start(resting);
   auto rested = [&](const Contact& contact) {
     if (!at_start.has(contact)) return false;
-    if (contact.gap > 0 && contact.gap <= gap(contact)) return true;
     const double same_distance = resting_contacts::kSamePoint * smaller_size(model_, contact);
-    return (contact.gap <= 0 && at_start.has(contact,
-                                             [&](const Contact& other) {
-                                               return (contact.x - other.x).norm() <= same_distance;
-                                             })) ||
+    return (contact.gap <= gap(contact) &&
+            at_start.has(
+                contact,
+                [&](const Contact& other) { return (contact.x - other.x).norm() <= same_distance; })) ||
            was_resting(contact, motion, state);
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
