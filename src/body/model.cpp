@@ -43,10 +43,10 @@ Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part
   add_springs();
   add_forces_and_torques();
   body.stabilization.check();
-  const bool whole = part_numbers_.size() == body.parts().size();
   for (std::size_t j = 0; j < body.joints().size(); ++j) {
     const std::vector<Point>& points = body.joints()[j]->points();
-    if (!whole && std::none_of(points.begin(), points.end(), [&](const Point& p) { return moves(p.part); }))
+    if (!is_whole() &&
+        std::none_of(points.begin(), points.end(), [&](const Point& p) { return moves(p.part); }))
       continue;
     joint_numbers_.push_back(static_cast<int>(j));
     add_joint(*body.joints()[j]);
@@ -87,7 +87,7 @@ bool Model::forms_clusters() const {
 
 int Model::number_of(const Part& part) const {
   const int number = body_->index(part);
-  if (part_numbers_.size() == body_->parts().size()) return number;
+  if (is_whole()) return number;
   const auto found = std::lower_bound(part_numbers_.begin(), part_numbers_.end(), number);
   return found == part_numbers_.end() || *found != number ? -1
                                                           : static_cast<int>(found - part_numbers_.begin());
@@ -132,9 +132,8 @@ void Model::add_part(Part& part) {
 }
 
 void Model::add_springs() {
-  const bool whole = part_numbers_.size() == body_->parts().size();
   for (const auto& spring : body_->springs()) {
-    if (!whole && !moves(spring->a.part) && !moves(spring->b.part)) continue;
+    if (!is_whole() && !moves(spring->a.part) && !moves(spring->b.part)) continue;
     const std::string what = "spring '" + spring->name + "'";
     SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
     if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
@@ -143,10 +142,9 @@ void Model::add_springs() {
 }
 
 void Model::add_forces_and_torques() {
-  const bool whole = part_numbers_.size() == body_->parts().size();
   for (const auto& force : body_->forces()) {
     if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
-    if (!whole && !moves(force->at.part)) continue;
+    if (!is_whole() && !moves(force->at.part)) continue;
     forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
   }
   for (const auto& torque : body_->torques()) {
@@ -154,7 +152,7 @@ void Model::add_forces_and_torques() {
     if (torque->part == nullptr) throw std::invalid_argument(what + " acts on no part");
     if (torque->against == torque->part)
       throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
-    if (!whole && !moves(torque->part) && !moves(torque->against)) continue;
+    if (!is_whole() && !moves(torque->part) && !moves(torque->against)) continue;
     torques_.push_back({torque.get(), number_of(*torque->part),
                         torque->against == nullptr ? -1 : number_of(*torque->against)});
   }

@@ -143,6 +143,8 @@ class Model {
   Model(const MultiBody& body, std::vector<int> parts);
 
   const MultiBody& body() const { return *body_; }
+  /// Whether the model contains all parts of the body.
+  bool is_whole() const { return part_numbers_.size() == body_->parts().size(); }
   /// Numbers of the parts, and of the joints, in the body; increasing.
   const std::vector<int>& part_numbers() const { return part_numbers_; }
   const std::vector<int>& joint_numbers() const { return joint_numbers_; }
