@@ -212,8 +212,9 @@ PLIANT_INLINE std::optional<double> locate_impact(StepContext& step, const Conta
 
 PLIANT_INLINE double gained_velocity(const ContactFinder& finder, const FreeMotion& motion,
                                      const State& state, const Contact& contact) {
-  const Vec3<double> change = finder.velocity(state, contact) - finder.velocity(motion.before, contact);
-  return change.dot(contact.normal) / motion.h * contact.since;
+  const double u = finder.velocity(state, contact).dot(contact.normal),
+               u_start = finder.velocity(motion.before, contact).dot(contact.normal);
+  return (u - u_start) / motion.h * std::min(motion.h, contact.gap / u);
 }
 
 PLIANT_INLINE void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
