@@ -134,8 +134,8 @@ void print_error(const pliant::ErrorEstimate& error) {
   std::cout << "\n";
 }
 
-/// Returns "; errors of contact: R m/s, D m" with the largest residual and overlap of a run; empty without
-/// contact.
+/// Returns "; largest violation of the laws of contact R m/s, largest overlap D m" with the values of a run;
+/// empty without contact.
 std::string contact_summary(const pliant::Run& run) {
   const pliant::StepCounters& counters = run.record().step_counters;
   if (!run.scene().body.contact.active) return {};

@@ -112,7 +112,9 @@ TEST_CASE("a tolerance of contact that is out of range is refused", "[contact]")
 TEST_CASE("a violation that no impulse prevents exceeds the tolerance, and its time is recorded",
           "[contact]") {
   // A joint presses a ball through the floor with a constant speed from the time 0.2 s on.
-  for (const std::optional<double>& tolerance : {std::optional<double>(), std::optional<double>(1e-5)}) {
+  double last_limit = 0;  // of the overlap, m
+  for (const std::optional<double>& tolerance :
+       {std::optional<double>(), std::optional<double>(1e-5), std::optional<double>(0.1)}) {
     MultiBody body;
     body.contact.tolerance = tolerance;
     Part& ball = body.add(make_part("ball", "sphere", {}, 1000));
@@ -131,6 +133,8 @@ TEST_CASE("a violation that no impulse prevents exceeds the tolerance, and its t
     CHECK_FALSE(counters.worst_overlap.is_allowed());
     CHECK(counters.worst_overlap.value == Approx(0.05).margin(1e-3));
     CHECK(counters.worst_overlap.time == Approx(0.3));
+    CHECK(counters.worst_overlap.tolerance >= last_limit);  // a tolerance makes the limit no stricter
+    last_limit = counters.worst_overlap.tolerance;
   }
 }
 

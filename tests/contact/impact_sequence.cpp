@@ -247,4 +247,184 @@ TEST_CASE("sequential impacts with friction keep the momenta and lose energy", "
     }
 }
 
+namespace {
+
+/// A body of a scene without gravity and friction: its place (m) and its velocity (m/s).
+struct Thrown {
+  Vec3<double> place, velocity;
+  double density = 1000;  ///< kg/m^3
+};
+
+/// Adds bodies of a shape, each named by its number, and eight bystanders, so that impacts are not located.
+void throw_bodies(MultiBody& body, const std::string& shape, const std::vector<Thrown>& thrown) {
+  body.gravity.setZero();
+  body.contact.active = true;
+  body.contact.friction = 0;
+  body.contact.restitution = 1;
+  body.contact.impacts = ImpactOrder::sequential;
+  auto add = [&](const std::string& name, const Thrown& one) {
+    Part& part = body.add(make_part(name, shape, {}, one.density));
+    if (shape == "sphere")
+      part.rest({{"r", kRadius}});
+    else
+      part.rest({{"a1", kRadius}, {"a2", kRadius}, {"a3", kRadius}});
+    part.place(one.place).velocity(one.velocity, {0, 0, 0});
+  };
+  for (std::size_t i = 0; i < thrown.size(); ++i) add(std::to_string(i), thrown[i]);
+  for (int i = 0; i < 8; ++i) add("bystander" + std::to_string(i), {{0, 10.0 + i, 0}, {0, 0, 0}});
+}
+
+/// Returns the velocity of a part along x, m/s.
+double speed_of(const Simulation& simulation, std::size_t part) {
+  return simulation.state().v[simulation.model().parts()[part].v0];
+}
+
+}  // namespace
+
+TEST_CASE("sequential impacts that are not located: an earlier impact changes the approach", "[contact]") {
+  // The second ball is slow at first. The first impact makes its approach ten times as fast.
+  MultiBody rising;
+  throw_bodies(rising, "sphere",
+               {{{-2 * kRadius - 5e-3, 0, 0}, {10, 0, 0}},
+                {{0, 0, 0}, {1, 0, 0}},
+                {{2 * kRadius + 5e-4, 0, 0}, {0, 0, 0}}});
+  Simulation row(rising, "rk4");
+  row.step(7e-4);
+  CHECK(row.step_counters().impacts == 0);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(speed_of(row, i) == Approx(std::vector<double>{0, 1, 10}[i]).margin(1e-10));
+
+  // The third ball pushes the second one obliquely, away from the first one: the approach falls to a third.
+  const double angle = 70 * kPi / 180;
+  const Vec3<double> along(std::cos(angle), std::sin(angle), 0);
+  MultiBody falling;
+  throw_bodies(falling, "sphere",
+               {{{-2 * kRadius - 2e-4, 0, 0}, {1, 0, 0}},
+                {{0, 0, 0}, {0, 0, 0}},
+                {-(2 * kRadius + 5e-4) * along, 2 * along}});
+  Simulation oblique(falling, "rk4");
+  const Ledger before = oblique.ledger();
+  oblique.step(7e-4);
+  CHECK(oblique.step_counters().sequential_impacts >= 2);
+  CHECK(oblique.ledger().kinetic == Approx(before.kinetic).epsilon(1e-10));
+  CHECK((oblique.ledger().momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
+}
+
+TEST_CASE("sequential impacts that are not located: a dropped ball rebounds without gain of energy",
+          "[contact]") {
+  for (const double e : {1.0, 0.5}) {
+    std::vector<double> speeds;
+    for (const ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential}) {
+      MultiBody body;
+      throw_bodies(body, "sphere", {{{0, 0, kRadius + 5e-4}, {0, 0, -1}}});
+      body.contact.restitution = e;
+      body.contact.impacts = order;
+      body.gravity = Vec3<double>(0, 0, -1000);
+      body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+      Simulation simulation(body, "rk4");
+      simulation.step(7e-4);
+      speeds.push_back(simulation.state().v[2]);
+    }
+    CAPTURE(e);
+    CHECK(speeds[0] > 0.1);
+    CHECK(speeds[1] == Approx(speeds[0]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("sequential impacts that are not located: bodies that separate cause no sequence", "[contact]") {
+  // Two balls that rest on the floor, and touch, separate slowly. The contacts with the floor are resolved
+  // once.
+  MultiBody body;
+  throw_bodies(body, "sphere",
+               {{{0, 0, kRadius}, {-3e-5, 0, 0}}, {{2 * kRadius - 1e-7, 0, kRadius}, {3e-5, 0, 0}}});
+  body.gravity = Vec3<double>(0, 0, -9.81);
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation simulation(body, "rk4");
+  simulation.step(1e-3);
+  const std::vector<Contact>& contacts = simulation.contact()->contacts();
+  CHECK(std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.b.part == 1; }));
+  CHECK(std::count_if(contacts.begin(), contacts.end(),
+                      [](const Contact& c) { return c.a.part < 2 && c.plane == 0; }) == 2);
+}
+
+TEST_CASE("sequential impacts to a tolerance of contact: what the solver leaves is no further impact",
+          "[contact]") {
+  // Faces of boxes touch at four contacts, at which the solver leaves velocities within the tolerance.
+  for (const double tolerance : {1e-4, 1e-2, 0.1})
+    for (int n = 3; n <= 6; ++n) {
+      CAPTURE(tolerance, n);
+      std::vector<Thrown> row;
+      for (int i = 0; i < n; ++i)
+        row.push_back({{2 * kRadius * i - (i == 0 ? 1e-3 : 0), 0, 0}, {i == 0 ? kSpeed : 0, 0, 0}});
+      MultiBody body;
+      throw_bodies(body, "box", row);
+      body.contact.tolerance = tolerance;
+      Simulation simulation(body, "rk4");
+      simulation.step(7e-4);
+      CHECK(simulation.step_counters().sequential_impacts == n - 1);
+      for (int i = 0; i < n; ++i)
+        CHECK(speed_of(simulation, static_cast<std::size_t>(i)) ==
+              Approx(i < n - 1 ? 0 : kSpeed).margin(2 * tolerance * kSpeed));
+    }
+}
+
+TEST_CASE("sequential impacts to a tolerance of contact: slow bodies rebound while others are fast",
+          "[contact]") {
+  const double far = 5;
+  std::vector<Thrown> thrown;
+  for (const double speed : {20.0, 0.1})
+    for (int i = 0; i < 2; ++i)
+      thrown.push_back({{(2 * kRadius + 3e-5) * i, speed == 20 ? 0 : far, 0}, {i == 0 ? speed : 0, 0, 0}});
+  MultiBody body;
+  throw_bodies(body, "sphere", thrown);
+  body.contact.tolerance = 0.01;
+  Simulation simulation(body, "rk4");
+  simulation.step(7e-4);
+  CHECK(speed_of(simulation, 1) == Approx(20));
+  CHECK(speed_of(simulation, 2) == Approx(0).margin(1e-6));
+  CHECK(speed_of(simulation, 3) == Approx(0.1));
+}
+
+TEST_CASE("sequential impacts to a tolerance of contact: a mirrored scene stays mirrored", "[contact]") {
+  // Two fast boxes meet a row from both ends. The box in the middle is heavy, so that the order of its
+  // impacts matters: both are simultaneous.
+  for (const double tolerance : {1e-6, 1e-3, 1e-2}) {
+    CAPTURE(tolerance);
+    MultiBody body;
+    throw_bodies(body, "box",
+                 {{{-4 * kRadius - 1e-3, 0.03, 0.05}, {kSpeed, 0, 0}},
+                  {{-2 * kRadius, 0.01, -0.02}, {0, 0, 0}},
+                  {{0, 0, 0}, {0, 0, 0}, 3000},
+                  {{4 * kRadius + 1e-3, 0.03, 0.05}, {-kSpeed, 0, 0}},
+                  {{2 * kRadius, 0.01, -0.02}, {0, 0, 0}}});
+    body.contact.tolerance = tolerance;
+    Simulation simulation(body, "rk4");
+    simulation.step(7e-4);
+    CHECK(simulation.step_counters().sequential_impacts > 1);
+    CHECK(std::abs(speed_of(simulation, 2)) < 20 * tolerance * kSpeed);
+    CHECK(std::abs(speed_of(simulation, 0) + speed_of(simulation, 3)) < 20 * tolerance * kSpeed);
+    CHECK(std::abs(speed_of(simulation, 1) + speed_of(simulation, 4)) < 20 * tolerance * kSpeed);
+  }
+}
+
+TEST_CASE("sequential impacts of discarded steps are not counted", "[contact]") {
+  // Balls on a floor: steps with resting contacts are repeated as two halves.
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 0;
+  body.contact.restitution = 1;
+  body.contact.impacts = ImpactOrder::sequential;
+  for (int i = 0; i < 3; ++i)
+    body.add(make_part("ball" + std::to_string(i), "sphere", {}, 1000))
+        .rest({{"r", kRadius}})
+        .place({2 * kRadius * i - (i == 0 ? kGap : 0), 0, kRadius})
+        .velocity({i == 0 ? kSpeed : 0, 0, 0}, {0, 0, 0});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation simulation(body, "dop853", 1, 1e-8);
+  while (simulation.time() < 2 * kGap / kSpeed) simulation.step_up_to(2 * kGap / kSpeed);
+  CHECK(speed_of(simulation, 2) == Approx(kSpeed));
+  CHECK(simulation.step_counters().impacts == 1);
+  CHECK(simulation.step_counters().sequential_impacts == 2);
+}
+
 }  // namespace impact_sequence_test

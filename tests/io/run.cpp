@@ -220,22 +220,32 @@ TEST_CASE("N67: a stiff shell, whose steps depend on its reused factors, also gi
   CHECK(results_of(folder / "broken") == results_of(folder / "unbroken"));
 }
 
-TEST_CASE("N57: if a joint pulls a part into a plane, run.json names the joint, the part and the plane") {
-  Scene scene;
-  scene.name = "conflict";
-  scene.end = 0.6;
-  scene.step = 2e-3;
-  scene.frame_rate = 50;
-  scene.integrator = "rk4";
-  Part& part = scene.body.add(make_part("weight", "sphere", {}, 1000));
+namespace {
+
+/// A ball that a joint presses through a floor, from the time 0.2 s on. more: text to add to the formula of
+/// the height (m) of the joint.
+std::unique_ptr<Scene> conflict_until(double end, const std::string& more = "") {
+  auto scene = std::make_unique<Scene>();
+  scene->name = "conflict";
+  scene->end = end;
+  scene->step = 2e-3;
+  scene->frame_rate = 50;
+  scene->integrator = "rk4";
+  Part& part = scene->body.add(make_part("weight", "sphere", {}, 1000));
   part.rest({{"r", 0.1}}).place({0, 0, 0.2});
-  scene.body.ball("pull", world(TimeVector(0, 0, TimeFunction::formula("0.3 - 0.5 * t"))),
-                  point(part, kPi / 2, 0));
-  scene.body.contact.active = true;
-  scene.body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
-  scene.appearance.emplace_back();
+  scene->body.ball("pull", world(TimeVector(0, 0, TimeFunction::formula("0.3 - 0.5 * t" + more))),
+                   point(part, kPi / 2, 0));
+  scene->body.contact.active = true;
+  scene->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  scene->appearance.emplace_back();
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("N57: if a joint pulls a part into a plane, run.json names the joint, the part and the plane") {
   const NewFolder folder;
-  REQUIRE(run(scene, folder / "out"));
+  REQUIRE(run(*conflict_until(0.6), folder / "out"));
   const auto json = record_of(folder / "out");
   const std::string notes = json.at("notes").dump();
   CAPTURE(notes);
@@ -243,18 +253,41 @@ TEST_CASE("N57: if a joint pulls a part into a plane, run.json names the joint, 
   CHECK(notes.find("unless ball 'pull' prevents it") != std::string::npos);
   // The ball reaches the floor at t = 0.2 s and is 0.2 m deep at the end.
   CHECK(
-      notes.find("s velocities at contacts violated the laws of contact by 0.5 m/s, but the tolerance there "
-                 "is 0.0005 m/s, a thousandth of the speed that the impulses stopped; use a shorter step") !=
+      notes.find("s velocities at contacts violated the laws of contact by 0.5 m/s. The tolerance there is "
+                 "0.0005 m/s, a thousandth of the speed that the impulses stopped. Check whether a joint") !=
       std::string::npos);
-  CHECK(
-      notes.find("at t = 0.6 s bodies still overlapped after their separation by 0.2 m, but the tolerance") !=
-      std::string::npos);
+  CHECK(notes.find("at t = 0.6 s bodies still overlapped after their separation by 0.2 m. The tolerance") !=
+        std::string::npos);
+  CHECK(notes.find("shorter step") == std::string::npos);
   const auto& monitors = json.at("monitors");
   CHECK(monitors.at("max_contact_residual") == Approx(0.5));
   CHECK(monitors.at("max_contact_overlap") == Approx(0.2).epsilon(1e-3));
   CHECK(monitors.at("worst_contact_residual").at("value") == Approx(0.5));
   CHECK(monitors.at("worst_contact_residual").at("tolerance") == Approx(5e-4));
   CHECK(monitors.at("worst_contact_overlap").at("time") == Approx(0.6));
+}
+
+TEST_CASE("a resumed run replaces its warnings about violations of contact, and a failed run has them") {
+  const NewFolder folder;
+  const auto warnings = [&](const char* what) {
+    const auto notes = record_of(folder / "out").at("notes");
+    return std::count_if(notes.begin(), notes.end(), [&](const auto& note) {
+      return note.template get<std::string>().find(what) != std::string::npos;
+    });
+  };
+  REQUIRE(run(*conflict_until(0.4), folder / "out"));
+  CHECK(warnings("bodies still overlapped") == 1);
+  REQUIRE(run(*conflict_until(0.6), folder / "out", {Existing::resume}));
+  CHECK(warnings("bodies still overlapped") == 1);
+  CHECK(warnings("at t = 0.6 s bodies still overlapped") == 1);
+  CHECK(warnings("velocities at contacts violated") == 1);
+
+  // The path ends in a pole at t = 0.9 s.
+  const auto scene = conflict_until(1, " - 1e-9 / (0.9 - t)^3");
+  CHECK_THROWS_AS(run(*scene, folder / "out", {Existing::force}), StepFailure);
+  CHECK(record_of(folder / "out").at("status") == "failed");
+  CHECK(warnings("bodies still overlapped") == 1);
+  CHECK(warnings("velocities at contacts violated") == 1);
 }
 
 TEST_CASE("a resumed run keeps the largest errors of contact, and bodies at rest cause no warning") {

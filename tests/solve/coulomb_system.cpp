@@ -284,4 +284,49 @@ TEST_CASE("a motion that no impulse can stop is reported in the residual", "[cou
   CHECK(x == Vec3<double>(-2, 0, 0));
 }
 
+TEST_CASE("a tolerance does not depend on the unit of a parameter at its limit", "[coulomb]") {
+  // A body with three contacts with a wall and a parameter at its limit. unit: the parameter in the test is
+  // `unit` times that of the first case.
+  Draws draws(12);
+  for (int trial = 0; trial < 20; ++trial) {
+    Eigen::Matrix<double, 7, 7> root;
+    for (double& entry : root.reshaped()) entry = draws.uniform(-1, 1);
+    const Eigen::Matrix<double, 7, 7> inverse_mass =
+        root * root.transpose() + 0.1 * Eigen::Matrix<double, 7, 7>::Identity();
+    MatX<double> rows = MatX<double>::Zero(4, 7);
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 7; ++j) rows(k, j) = (j == 0 ? 1 : 0) + draws.uniform(-0.4, 0.4);
+    rows(3, 6) = -1;
+    const double share = 1e-3;
+    for (const double unit : {1.0, 1e5, 1e-5}) {
+      CAPTURE(trial, unit);
+      VecX<double> scale = VecX<double>::Ones(7);
+      scale[6] = unit;
+      CoulombSystem system;
+      system.add_mover(7);
+      for (int k = 0; k < 4; ++k) {
+        if (k < 3)
+          system.add_contact(0);
+        else
+          system.add_limit();
+        const VecX<double> J = rows.row(k).transpose().cwiseQuotient(k < 3 ? scale : VecX<double>::Ones(7));
+        system.add_side(0, 0, 7).row(0) = J.transpose();
+        system.add_push(0).col(0) = scale.cwiseProduct(inverse_mass * scale.cwiseProduct(J));
+      }
+      VecX<double> x = VecX<double>::Zero(7);
+      x[0] = -1;
+      x[6] = unit;
+      double approach = 0;
+      for (int k = 0; k < 3; ++k) approach = std::max(approach, -system.velocity(k, x)[0]);
+      system.solve(x, {0, share});
+      for (int k = 0; k < 4; ++k) {
+        const double u = system.velocity(k, x)[0], p = system.impulse(k)[0],
+                     stopped = k < 3 ? approach : system.effect(k, k)(0, 0) * p;
+        CHECK(u >= -share * stopped - 1e-9 * unit);
+        if (p > 0) CHECK(u <= share * stopped + system.effect(k, k)(0, 0) * p * 1e-9);
+      }
+    }
+  }
+}
+
 }  // namespace coulomb_system_test

@@ -96,9 +96,10 @@ struct ContactSettings {
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over speed before
   ImpactOrder impacts = ImpactOrder::simultaneous;
-  /// Largest violation of the laws of contact, as a share of the largest speed at which bodies that touch
-  /// each other would approach without impulses (contact/README.md). At rest this is the speed that gravity
-  /// gives a body in a step, at an impact the speed of the impact. Not given: rounding.
+  /// Largest violation of the laws of contact, as a share of the largest speed that the impulses on bodies
+  /// that touch each other stop (contact/README.md). At rest this is the speed that gravity gives a body in a
+  /// step. At an impact it is 1 + e times the speed of the impact. The relative error of the impulses may be
+  /// larger, for instance in tall stacks. Not given: rounding.
   std::optional<double> tolerance{};
   /// Pairs with settings of their own. Two parts with a common joint touch only if a pair names both.
   std::vector<ContactPair> pairs;

@@ -118,7 +118,7 @@ PLIANT_INLINE void ContactProblem::add_limits() {
         if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 ||
             work_.parts[at(part)].without_inertia(6 + k))
           continue;
-        system_.add_row();
+        system_.add_limit();
         Side side = make_side(part);
         side.J(0, 6 + k) = -mode;
         sides_.push_back(std::move(side));

@@ -129,6 +129,7 @@ PLIANT_INLINE double ContactResolution::match_distance(const Contact& contact) c
 
 PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
   resolved_.clear();
+  travel_.clear();
   resolutions_ = 0;
   cold_start_ =
       state.contact_cache.empty() || state.contact_cache_age >= contact_resolution::kMaxWarmStartAge;
@@ -364,18 +365,16 @@ PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) 
                    contact_resolution::kRoundingUlps * rounding});
 }
 
-/// Records the overlaps that remain at time t (s). Without ContactSettings::tolerance, overlaps up to
-/// RestingContacts::tight_gap are within the tolerance of the record.
+/// Records the overlaps that remain at time t (s). The tolerance of the record is allowed_overlap(), or
+/// RestingContacts::tight_gap if that is larger.
 PLIANT_INLINE void ContactResolution::record_overlaps(const std::vector<Contact>& contacts, double t) {
-  const bool has_tolerance = dynamics_.model().body().contact.tolerance.has_value();
   record_.overlap = 0;
   record_.worst_overlap = {};
   for (const Contact& contact : contacts) {
     if (!(contact.gap < 0)) continue;
-    const double allowed = allowed_overlap(contact);
     record_.overlap = std::max(record_.overlap, -contact.gap);
     record_.worst_overlap.keep_worse(
-        {-contact.gap, has_tolerance ? allowed : std::max(allowed, resting_.tight_gap(contact)), t});
+        {-contact.gap, std::max(allowed_overlap(contact), resting_.tight_gap(contact)), t});
   }
 }
 

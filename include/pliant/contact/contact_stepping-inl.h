@@ -432,24 +432,33 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
 
 /// Resolves the impacts at the contacts of the motion in sequence, at its end: first the resting contacts,
 /// whose impulses stand for forces, and then the impacts, which these contacts transmit. Impacts that remain
-/// have no rebound.
+/// have no rebound. Without an impact faster than FreeMotion::min_impact_speed there is no sequence.
 PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext& step) {
   const FreeMotion& free = motion.free;
   const Pairs rest(motion.resting);
   std::vector<Contact> resting, impacts = motion.contacts;
+  auto is_impact = [&](const Contact& contact) {
+    return contact.gap < 0 &&
+           -finder_.velocity(step.state, contact).dot(contact.normal) > free.min_impact_speed;
+  };
   double since_first = 0;  // time since the first impact, s
   bool any_rebound = false;
   for (const Contact& contact : motion.contacts) {
     any_rebound = any_rebound || contact.restitution > 0;
     if (rest.has(contact))
       resting.push_back(contact);
-    else
+    else if (is_impact(contact))
       since_first = std::max(since_first, contact.since);
   }
   if (since_first == 0 || !any_rebound) return;
-  for (Contact& contact : impacts)
-    if (rest.has(contact)) contact.since = since_first;
   resolution_.resolve(step, {free.before, free.force_time(), free.h, false}, std::move(resting));
+  for (Contact& contact : impacts) {
+    contact.rebound = 0;
+    if (rest.has(contact))
+      contact.since = since_first;
+    else if (is_impact(contact))
+      contact.rebound = (1 + contact.restitution) * gained_velocity(finder_, free, step.state, contact);
+  }
   impact_sequence_.resolve(step, impacts, free.h, free.min_impact_speed);
   for (Contact& contact : motion.contacts) contact.rebound = 0;
 }

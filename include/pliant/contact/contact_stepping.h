@@ -48,13 +48,13 @@ class ContactStepping {
   /// over a step have an error of O(h^2), which the difference of both results estimates; the error of the
   /// extrapolation is O(h^3). If the step ended at an event, the halves locate the event themselves and are
   /// not extrapolated. initial: the state at the start, with the length of the step before any event
-  /// shortened it. length: the actual length of the step, s. impacts: the count of impacts before the step.
+  /// shortened it. length: the actual length of the step, s. before: the counters before the step.
   /// step.state: on input the state at the end of the step, on output that of the halves. Returns the larger
   /// of two errors, in tolerances, and the length of the halves. The first is that of contact, the second
   /// that of the method in the halves. If the bodies in contact were at rest and have no prescribed motion,
   /// the error is 0 and the step is not repeated. If the halves fail, the error is infinite.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
-                             const State& initial, double length, long impacts);
+                             const State& initial, double length, const StepCounters& before);
 
   /// Wall-clock time of all steps by stage, s.
   struct StageTimes {

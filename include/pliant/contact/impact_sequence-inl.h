@@ -8,7 +8,9 @@
 
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/touched_parts.h>
+#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
@@ -16,10 +18,13 @@ namespace impact_sequence {
 
 /// Largest number of impacts in a sequence: kMaxImpacts, and kMaxImpactsOfPair more for each pair.
 inline constexpr std::size_t kMaxImpacts = 1000, kMaxImpactsOfPair = 10;
-/// Approach speeds up to this share of the largest one at the start are rounding.
-inline constexpr double kRounding = 1e-10;
-/// Approach speeds that differ by at most this share are equal.
-inline constexpr double kEqualSpeed = 1e-9;
+/// Approach speeds up to this share of the largest one of connected bodies at the start are rounding. So are
+/// those that the impulses leave: up to kLeftPerTolerance times the tolerance of contact, because the speed
+/// that impulses stop includes the rebound, which is at most as fast as the approach.
+inline constexpr double kRounding = 1e-10, kLeftPerTolerance = 2;
+/// Approach speeds that differ by at most this share, or by kEqualResiduals times the residual of the
+/// impulses in this step, are equal.
+inline constexpr double kEqualSpeed = 1e-9, kEqualResiduals = 2;
 
 }  // namespace impact_sequence
 
@@ -40,25 +45,50 @@ PLIANT_INLINE std::vector<ImpactSequence::Pair> ImpactSequence::pairs_of(
   std::stable_sort(sorted.begin(), sorted.end(), ByPair{});
   std::vector<Pair> pairs;
   for (const Contact& contact : sorted) {
-    if (pairs.empty() || key_of(pairs.back().contacts.front()) != key_of(contact)) pairs.push_back({{}, 0});
+    if (pairs.empty() || key_of(pairs.back().contacts.front()) != key_of(contact))
+      pairs.push_back({{}, 0, 0});
     pairs.back().contacts.push_back(contact);
   }
   for (Pair& pair : pairs) pair.approach = approach(state, pair);
   return pairs;
 }
 
-/// Returns the contacts of all pairs that approach with the largest speed, `fastest`, and sets their
-/// rebounds. In the pairs the rebounds of these contacts become zero: their next impact follows Newton's law.
-PLIANT_INLINE std::vector<Contact> ImpactSequence::next_impacts(const State& state, double fastest,
+/// Sets the slowest impact of each pair: a share of the largest approach speed among the pairs that bodies
+/// connect with it, but at least min_speed.
+PLIANT_INLINE void ImpactSequence::set_slowest(const Model& model, double min_speed,
+                                               std::vector<Pair>& pairs) {
+  const double tolerance = model.body().contact.tolerance.value_or(0),
+               share = std::max(impact_sequence::kRounding, impact_sequence::kLeftPerTolerance * tolerance);
+  // Each pair is an element, and so is each part. A body is represented by the first part of its island.
+  const std::size_t n = pairs.size();
+  DisjointSets connected(n + model.parts().size());
+  for (std::size_t k = 0; k < n; ++k)
+    for (const int part : {pairs[k].contacts.front().a.part, pairs[k].contacts.front().b.part}) {
+      if (part < 0 || model.parts()[at(part)].q0 < 0) continue;
+      const int island = model.parts()[at(part)].island,
+                first = island < 0 ? part : model.islands()[at(island)].parts.front();
+      connected.unite(static_cast<int>(k), static_cast<int>(n) + first);
+    }
+  std::vector<double> largest(n + model.parts().size(), 0);  // of each set, m/s
+  auto largest_of = [&](std::size_t k) -> double& {
+    return largest[at(connected.root(static_cast<int>(k)))];
+  };
+  for (std::size_t k = 0; k < n; ++k) largest_of(k) = std::max(largest_of(k), pairs[k].approach);
+  for (std::size_t k = 0; k < n; ++k) pairs[k].slowest = std::max(min_speed, share * largest_of(k));
+}
+
+/// Returns the contacts of all pairs that approach at least with the speed `least`, and sets their rebounds.
+/// In the pairs the corrections of these rebounds become zero: the next impact follows Newton's law.
+PLIANT_INLINE std::vector<Contact> ImpactSequence::next_impacts(const State& state, double least,
                                                                 double min_speed,
                                                                 std::vector<Pair>& pairs) const {
   std::vector<Contact> impacts;
   for (Pair& pair : pairs) {
-    if (pair.approach < (1 - impact_sequence::kEqualSpeed) * fastest) continue;
+    if (!pair.has_impact() || pair.approach < least) continue;
     for (Contact& contact : pair.contacts) {
       impacts.push_back(contact);
-      const double rebound = contact.restitution * approach(state, contact);
-      if (contact.rebound == 0 && rebound > min_speed) impacts.back().rebound = rebound;
+      const double rebound = contact.restitution * approach(state, contact) + contact.rebound;
+      impacts.back().rebound = rebound > min_speed ? rebound : 0;
       contact.rebound = 0;
     }
   }
@@ -71,15 +101,18 @@ PLIANT_INLINE void ImpactSequence::resolve(StepContext& step, const std::vector<
   if (std::none_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.restitution > 0; }))
     return;
   std::vector<Pair> pairs = pairs_of(state, contacts);
-  double slowest = min_speed;
-  for (const Pair& pair : pairs) slowest = std::max(slowest, impact_sequence::kRounding * pair.approach);
+  set_slowest(step.model(), min_speed, pairs);
   const std::size_t max_impacts =
       impact_sequence::kMaxImpacts + impact_sequence::kMaxImpactsOfPair * pairs.size();
   for (std::size_t impacts = 0; impacts < max_impacts; ++impacts) {
-    double fastest = 0;
-    for (const Pair& pair : pairs) fastest = std::max(fastest, pair.approach);
-    if (!(fastest > slowest)) return;
-    const std::vector<Contact> next = next_impacts(state, fastest, min_speed, pairs);
+    const Pair* first = nullptr;
+    for (const Pair& pair : pairs)
+      if (pair.has_impact() && (first == nullptr || pair.approach > first->approach)) first = &pair;
+    if (first == nullptr) return;
+    const double equal =
+        std::max(impact_sequence::kEqualSpeed * first->approach,
+                 std::min(impact_sequence::kEqualResiduals * state.contact_residual, first->slowest));
+    const std::vector<Contact> next = next_impacts(state, first->approach - equal, min_speed, pairs);
     resolution_.resolve(step, {state, 0, h, false}, next);
     ++step.counters.sequential_impacts;
     const std::vector<int> moved = parts_touched(step.model(), next);

@@ -17,12 +17,14 @@ class ImpactSequence {
       : finder_(finder), resolution_(resolution) {}
 
   /// Resolves the impacts at some contacts at step.t pair by pair. Each impact satisfies Newton's law and
-  /// Coulomb's law at all contacts of its pair. A contact with Contact::rebound has this rebound in its first
-  /// impact. Pairs that approach equally fast are resolved together, so that symmetric motions stay
-  /// symmetric. h: see ResolvedMotion. min_speed: slower approaches and rebounds are no impacts, m/s. A
-  /// sequence has at most 1000 impacts and ten more for each pair. If pairs still approach afterwards,
-  /// StepCounters::contact_cutoffs grows by one. Without restitution there is no sequence: it would converge
-  /// slowly to impulses that Newton's law at all contacts at once gives directly.
+  /// Coulomb's law at all contacts of its pair. Contact::rebound on input is a correction of the rebound in
+  /// the first impact of the contact, m/s: (1 + e) times the normal velocity that accelerations have given
+  /// its sides since they met. Pairs that approach equally fast, except for the residual of the impulses, are
+  /// resolved together, so that symmetric motions stay symmetric. h: see ResolvedMotion. min_speed: slower
+  /// approaches and rebounds are no impacts, m/s. Neither are approaches that ContactSettings::tolerance
+  /// lets the impulses leave. A sequence has at most 1000 impacts and ten more for each pair. If pairs still
+  /// approach afterwards, StepCounters::contact_cutoffs grows by one. Without restitution there is no
+  /// sequence: it would converge slowly to impulses that Newton's law at all contacts at once gives directly.
   void resolve(StepContext& step, const std::vector<Contact>& contacts, double h, double min_speed);
 
  private:
@@ -30,11 +32,15 @@ class ImpactSequence {
   struct Pair {
     std::vector<Contact> contacts;
     double approach;  ///< largest approach speed of a contact, m/s
+    double slowest;   ///< slower approaches are no impacts, m/s
+
+    bool has_impact() const { return approach > slowest; }
   };
   double approach(const State& state, const Contact& contact) const;
   double approach(const State& state, const Pair& pair) const;
   std::vector<Pair> pairs_of(const State& state, const std::vector<Contact>& contacts) const;
-  std::vector<Contact> next_impacts(const State& state, double fastest, double min_speed,
+  static void set_slowest(const Model& model, double min_speed, std::vector<Pair>& pairs);
+  std::vector<Contact> next_impacts(const State& state, double least, double min_speed,
                                     std::vector<Pair>& pairs) const;
 
   const ContactFinder& finder_;

@@ -210,6 +210,13 @@ PLIANT_INLINE std::optional<double> locate_impact(StepContext& step, const Conta
   return impact_timing::refine_impact(gap, bracket, h, approximate);
 }
 
+PLIANT_INLINE double gained_velocity(const ContactFinder& finder, const FreeMotion& motion,
+                                     const State& state, const Contact& contact) {
+  const double u = finder.velocity(state, contact).dot(contact.normal),
+               u_start = finder.velocity(motion.before, contact).dot(contact.normal);
+  return (u - u_start) / motion.h * std::min(motion.h, contact.gap / u);
+}
+
 PLIANT_INLINE void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                                 std::vector<Contact>& contacts) {
   for (Contact& contact : contacts) {
@@ -219,7 +226,7 @@ PLIANT_INLINE void time_impacts(const ContactFinder& finder, const FreeMotion& m
     const double u_start = finder.velocity(motion.before, contact).dot(contact.normal);
     if (!(u < 0 && contact.gap < 0 && u_start < -motion.min_impact_speed)) continue;
     // The acceleration that pushes the sides together has acted since the impact too.
-    const double gained = (u - u_start) / motion.h * contact.since, approach = gained - u;
+    const double gained = gained_velocity(finder, motion, state, contact), approach = gained - u;
     if (contact.restitution * approach > motion.min_impact_speed)
       contact.rebound = std::max(0.0, contact.restitution * approach + gained);
   }

@@ -25,6 +25,12 @@ inline void set_step(State& state, double t, double h) {
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 
+/// Returns the normal velocity that the accelerations during the motion have given the sides of a contact
+/// since they met, m/s; negative: they push the sides together. state: at the end of the motion, at which the
+/// sides overlap and approach.
+double gained_velocity(const ContactFinder& finder, const FreeMotion& motion, const State& state,
+                       const Contact& contact);
+
 /// Sets Contact::since of contacts at the end of a motion: the time since their sides met, s, at their
 /// present normal velocity, at most the length of the motion. If the sides do not overlap or do not approach,
 /// the time is force_time() of the motion. Sets Contact::rebound of overlapping sides that approach, and

@@ -88,7 +88,7 @@ PLIANT_INLINE bool ContactStepping::may_double() const {
 
 PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step,
                                                           const ErrorScale& scale, const State& initial,
-                                                          double length, long impacts) {
+                                                          double length, const StepCounters& before) {
   constexpr int order = 1;
   const Model& model = dynamics_.model();
   State& state = step.state;
@@ -98,8 +98,9 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
       step_doubling::were_at_rest(model, scale, parts_touched(model, touching), initial, state))
     return {0, order, length};
   const Whole whole{state, length, resting_at_start_, record_.contacts.size(),
-                    step.counters.impacts > impacts || at_friction_event_};
-  step.counters.impacts = impacts;
+                    step.counters.impacts > before.impacts || at_friction_event_};
+  step.counters.impacts = before.impacts;
+  step.counters.sequential_impacts = before.sequential_impacts;
   undo_step();
   begin_step();
   state = initial;
@@ -107,7 +108,7 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   const double method_error = method.pop_error();
   if (!halves.finite || !(method_error <= 1))
     return {std::numeric_limits<double>::infinity(), order, halves.length};
-  const bool has_event = step.counters.impacts > impacts || at_friction_event_;
+  const bool has_event = step.counters.impacts > before.impacts || at_friction_event_;
   const bool agreed = agree(whole, halves, has_event, state);
   const double contact_error = difference(whole, halves, agreed, scale, initial.time(), state);
   const double error = std::max(contact_error, method_error);

@@ -322,13 +322,13 @@ PLIANT_INLINE StepError Simulation::try_step() {
   }
   const int order = integrator_->error_order();
   StepError result{std::numeric_limits<double>::infinity(), order, state_.h};
-  const long impacts = step_counters_.impacts;
+  const StepCounters before = step_counters_;
   try {
     result.length = integrate();
     const double error = integrator_->pop_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
     if (contact_ && result.error <= 1 && contact_->has_contact_error())
-      estimate_contact_error(impacts, result);
+      estimate_contact_error(before, result);
   } catch (const StepFailure&) {
     integrator_->pop_error();
     result.error = std::numeric_limits<double>::infinity();
@@ -338,15 +338,16 @@ PLIANT_INLINE StepError Simulation::try_step() {
   }
   if (contact_ && !(result.error <= 1)) {
     contact_->undo_step();
-    step_counters_.impacts = impacts;
+    step_counters_.impacts = before.impacts;
+    step_counters_.sequential_impacts = before.sequential_impacts;
   }
   return result;
 }
 
 /// Includes the error of contact in the result of a step with resting contacts, or with impacts that were not
 /// located. Step doubling estimates this error. With many moving parts or contacts at nodes, the error is
-/// instead the ratio of the step to longest_contact_step(). impacts: number of impacts before the step.
-PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& result) {
+/// instead the ratio of the step to longest_contact_step(). before: the counters before the step.
+PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before, StepError& result) {
   const bool may_double = contact_->may_double();
   // The work of point forces on resting bodies is computed for a motion that the contacts prevent. Short
   // steps limit the error of this work.
@@ -361,7 +362,7 @@ PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& r
   }
   StepContext step = context();
   const StepError halves =
-      contact_->step_by_doubling(*integrator_, step, *scale_, attempt_start_, result.length, impacts);
+      contact_->step_by_doubling(*integrator_, step, *scale_, attempt_start_, result.length, before);
   if (!(halves.error <= result.error)) result = halves;
   result.length = halves.length;
 }

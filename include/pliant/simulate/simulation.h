@@ -99,7 +99,7 @@ class Simulation {
   void forget_counters();
   void set_method(std::unique_ptr<Integrator> method);
   StepError try_step();
-  void estimate_contact_error(long impacts, StepError& result);
+  void estimate_contact_error(const StepCounters& before, StepError& result);
   void fail_to_meet_tolerance();
   bool shorter_steps_pass(double h);
   void begin_step();

@@ -89,7 +89,7 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
   for (int i = 0; i < size_; ++i) {
     const Vec3<double> u = velocity(i);
     scale_ = std::max(scale_, u.lpNorm<Eigen::Infinity>());
-    approach_ = std::max(approach_, -u[0]);
+    if (!contact(i).is_limit) approach_ = std::max(approach_, -u[0]);
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
@@ -176,17 +176,26 @@ PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
   return change;
 }
 
+/// Returns the factor by which a violation of the law of contact i counts, if `accepted` is the accepted
+/// violation of contacts. At a limit of a parameter, the share of the speed that the impulse p stops is
+/// accepted instead. At other contacts the factor is 1.
+PLIANT_INLINE double CoulombCluster::weight_of(int i, double p, double share, double accepted) const {
+  if (!contact(i).is_limit) return 1;
+  return accepted / std::max(rounding_, share * contact(i).W(0, 0) * p);
+}
+
 /// Returns the largest violation of the law, as a velocity: |W dp| for the change dp of an impulse that
-/// satisfies the law of its contact alone.
-PLIANT_INLINE double CoulombCluster::residual() const {
+/// satisfies the law of its contact alone. share, accepted: see weight_of().
+PLIANT_INLINE double CoulombCluster::residual(double share, double accepted) const {
   double worst = 0;
   for (int i = 0; i < size_; ++i) {
     if (is_fixed(i)) {  // no impulse can change it
       worst = std::max(worst, -velocity(i)[0]);
       continue;
     }
-    const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
-    worst = std::max(worst, (contact(i).W * dp).lpNorm<Eigen::Infinity>());
+    const Vec3<double> q = law_impulse(i, velocity(i)), dp = q - p(i);
+    worst = std::max(worst, weight_of(i, std::max(q[0], p(i)[0]), share, accepted) *
+                                (contact(i).W * dp).lpNorm<Eigen::Infinity>());
   }
   return worst;
 }
@@ -322,10 +331,11 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
 /// Adds the residual of this cluster to the result.
 PLIANT_INLINE void CoulombCluster::record(double residual, CoulombResult& result) const {
   result.residual = std::max(result.residual, residual);
-  const double accepted =
-      std::max(exact_level(), tolerance_.share.value_or(detail::kReportedShare) * approach_);
-  if (!(residual * result.worst_accepted >= result.worst_residual * accepted) || !(residual > 0)) return;
-  result.worst_residual = residual;
+  const double share = tolerance_.share.value_or(detail::kReportedShare),
+               accepted = std::max(exact_level(), share * approach_);
+  const double reported = this->residual(share, accepted);
+  if (!(reported * result.worst_accepted >= result.worst_residual * accepted) || !(reported > 0)) return;
+  result.worst_residual = reported;
   result.worst_accepted = accepted;
 }
 

@@ -88,7 +88,9 @@ class CoulombCluster {
   double exact_level(bool to_rounding = false) const;
   void record(double residual, CoulombResult& result) const;
   double sweep(bool forward);
-  double residual() const;
+  double residual() const { return residual(tolerance_.share.value_or(0), exact_); }
+  double residual(double share, double accepted) const;
+  double weight_of(int i, double p, double share, double accepted) const;
   void copy_impulses(VecX<double>& impulses) const;
   void clear_impulses();
   void set_impulses(const VecX<double>& impulses);

@@ -43,6 +43,11 @@ PLIANT_INLINE void CoulombSystem::add_row() {
   begin_contact(1, 0);
 }
 
+PLIANT_INLINE void CoulombSystem::add_limit() {
+  begin_contact(1, 0);
+  contacts_.back().is_limit = true;
+}
+
 PLIANT_INLINE CoulombSystem::Term CoulombSystem::term(int mover, int first, int size) {
   const Term term{mover, this->first(mover) + first, size, numbers_.size()};
   numbers_.resize(numbers_.size() + at(3 * size), 0.0);

@@ -22,7 +22,8 @@ namespace pliant {
 struct CoulombTolerance {
   double velocity = 0;  ///< a velocity, in units of u
   /// A share of the approach speed of a cluster, which is the largest -u_n of its contacts without impulses.
-  /// Not given: the search ends at rounding.
+  /// At a limit of a parameter, a share of the speed that its own impulse stops. Not given: the search ends
+  /// at rounding.
   std::optional<double> share{};
 };
 
@@ -57,6 +58,9 @@ class CoulombSystem {
   void add_contact(double mu);
   /// Adds a single one-sided row. The row is stored as a contact whose two tangential rows are zero.
   void add_row();
+  /// Adds a single one-sided row for a limit of a parameter. Its velocity has the unit of the parameter and
+  /// is left out of the approach speed of CoulombTolerance.
+  void add_limit();
   /// Adds a side of the last contact: J for `size` velocities of a mover, starting at velocity `first` of
   /// that mover. Returns the 3 x size matrix, initially zero. The caller fills it before the next add
   /// function.
@@ -120,7 +124,7 @@ class CoulombSystem {
     Vec3<double> c = Vec3<double>::Zero();
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
-    bool warm_start = false;
+    bool warm_start = false, is_limit = false;
   };
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);

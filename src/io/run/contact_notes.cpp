@@ -15,6 +15,10 @@ namespace {
 
 constexpr std::size_t kMaxReported = 10;  // largest number of pairs that are reported per state
 
+// The subjects of the notes of violation_notes(), by which is_violation_note() finds them.
+constexpr const char* kResidualText = "velocities at contacts violated the laws of contact";
+constexpr const char* kOverlapText = "bodies still overlapped after their separation";
+
 /// Returns the kind and the name of the second side of a contact, for example "the plane 'floor'".
 std::string other_side(const Model& model, const Contact& contact) {
   if (contact.b.part >= 0) return "part '" + model.parts()[at(contact.b.part)].part->name() + "'";
@@ -86,22 +90,27 @@ std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<To
 std::vector<std::string> violation_notes(const StepCounters& counters, const ContactSettings& settings) {
   const std::string share =
       settings.tolerance ? rounded_text(*settings.tolerance) : std::string("a thousandth");
-  const std::string remedy = std::string("use a shorter step") +
-                             (settings.tolerance ? " or a larger \"tolerance\" of \"contact\"" : "");
   auto text = [](const ContactViolation& violation, const char* what, const char* unit) {
     return "warning: at t = " + rounded_text(violation.time) + " s " + what + " by " +
-           rounded_text(violation.value) + " " + unit + ", but the tolerance there is " +
+           rounded_text(violation.value) + " " + unit + ". The tolerance there is " +
            rounded_text(violation.tolerance) + " " + unit;
   };
   std::vector<std::string> notes;
   if (const ContactViolation& worst = counters.worst_residual; !worst.is_allowed())
-    notes.push_back(text(worst, "velocities at contacts violated the laws of contact", "m/s") + ", " + share +
-                    " of the speed that the impulses stopped; " + remedy +
-                    ", and check whether a joint or a prescribed motion presses bodies into each other");
+    notes.push_back(
+        text(worst, kResidualText, "m/s") + ", " + share +
+        " of the speed that the impulses stopped. Check whether a joint or a prescribed motion "
+        "presses bodies into each other, or whether a light body carries much heavier ones." +
+        (settings.tolerance ? " A larger \"tolerance\" of \"contact\" accepts such violations." : ""));
   if (const ContactViolation& worst = counters.worst_overlap; !worst.is_allowed())
-    notes.push_back(text(worst, "bodies still overlapped after their separation", "m") + "; " + remedy +
-                    "; bodies that start in each other are separated at a bounded speed");
+    notes.push_back(text(worst, kOverlapText, "m") +
+                    ". Contact separates bodies at a bounded speed. Place bodies apart at the start, and "
+                    "check whether a joint or a prescribed motion presses them into each other.");
   return notes;
+}
+
+bool is_violation_note(const std::string& note) {
+  return note.find(kResidualText) != std::string::npos || note.find(kOverlapText) != std::string::npos;
 }
 
 }  // namespace pliant

@@ -286,6 +286,14 @@ void Run::note_turns() {
   }
 }
 
+/// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
+/// write_record() must have updated the counters.
+void Run::note_violations() {
+  std::vector<std::string>& notes = record_.notes;
+  notes.erase(std::remove_if(notes.begin(), notes.end(), is_violation_note), notes.end());
+  for (const std::string& text : violation_notes(record_.step_counters, scene_->body.contact)) note(text);
+}
+
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
   recorded_time_ = simulation_->time();
@@ -414,6 +422,7 @@ bool Run::simulate() {
       record_state();
       record_.add_seconds("simulate", seconds_since(start));
       save(true);
+      note_violations();
       write_tables();
       throw;
     }
@@ -425,7 +434,7 @@ bool Run::simulate() {
            ": the error of these steps is not controlled; they are at most " +
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
            " s long, and --estimate-error measures their error");
-    for (const std::string& text : violation_notes(record_.step_counters, scene_->body.contact)) note(text);
+    note_violations();
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });

@@ -31,5 +31,7 @@ std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<To
 /// Returns warnings about the largest residual and the largest overlap of a run, if they exceed the tolerance
 /// of contact. settings: those of the run.
 std::vector<std::string> violation_notes(const StepCounters& counters, const ContactSettings& settings);
+/// Returns whether a note is one of violation_notes().
+bool is_violation_note(const std::string& note);
 
 }  // namespace pliant

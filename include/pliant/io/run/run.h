@@ -95,6 +95,7 @@ class Run {
   void note_redundancy();
   void note_engagements();
   void note_turns();
+  void note_violations();
 
   Scene* scene_;
   RunOptions options_;
