@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -19,9 +20,8 @@ constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
 constexpr double kFarthest = 4;
 /// The search ends after a step that is shorter than this (rad, and sizes).
 constexpr double kLastNormalStep = 1e-8;
-/// After kMaxNormalSteps steps that are longer than this (rad, and sizes) there is no common normal nearby:
-/// the search alternates between both sides of a line at which the curvature jumps. Otherwise it has failed.
-constexpr double kStillMoves = 1e-4;
+/// Vectors shorter than this (without unit, and in sizes) have no direction from which a search can start.
+constexpr double kShortest = 1e-6;
 /// Added to the diagonal of the Hessian, in units of 1 / size, so that the Hessian can be inverted where
 /// points with common normals form a curve.
 constexpr double kStiffness = 1e-9;
@@ -47,6 +47,14 @@ Eigen::Vector2d tangent_lengths(const FeatureJet& jet) {
   return length;
 }
 
+/// Whether the distance of a vertex from the points of a face is least at a point with a common normal, to
+/// second order: 1 + g kappa > 0 for the curvatures kappa of the face, positive where it is convex.
+bool is_nearest(const FeatureJet& face, const CommonNormal& at) {
+  const Vec3<double> to_vertex = at.gap * face.normal;
+  const Eigen::Matrix2d H = face.tangents.transpose() * face.tangents - height_curvature(face, to_vertex);
+  return H.trace() > 0 && H.determinant() > 0;
+}
+
 Matrix32 plane_basis(const Vec3<double>& n) {
   Matrix32 P;
   P.col(0) = n.unitOrthogonal();
@@ -68,24 +76,23 @@ FeatureJet NormalSearch::turned(FeatureJet jet) const {
 }
 
 Vec3<double> NormalSearch::start(const Patch& a, const Patch& b) const {
-  const Vec3<double> outward = b.bound.axis - pose_.R * a.bound.axis;
-  if (b.jet.dimension == 2 || a.jet.dimension == 2) {
-    Vec3<double> n = Vec3<double>::Zero();
-    if (b.jet.dimension == 2) n += b.jet.normal;
-    if (a.jet.dimension == 2) n -= pose_.R * a.jet.normal;
-    return n.normalized();
-  }
-  const Vec3<double> d = pose_(a.jet.x) - b.jet.x;
-  Vec3<double> n = d;
-  if (a.jet.dimension + b.jet.dimension == 2) {
-    n = Vec3<double>(pose_.R * a.jet.tangents.col(0)).cross(b.jet.tangents.col(0));
+  const Vec3<double> outward = b.bound.axis - pose_.R * a.bound.axis, d = (pose_(a.jet.x) - b.jet.x) / size_;
+  auto is_short = [](const Vec3<double>& n) { return !(n.squaredNorm() > kShortest * kShortest); };
+  Vec3<double> n = Vec3<double>::Zero();
+  if (b.jet.dimension == 2) n += b.jet.normal;
+  if (a.jet.dimension == 2) n -= pose_.R * a.jet.normal;
+  if (!is_short(n)) return n.normalized();
+  const Vec3<double> along_a = pose_.R * a.jet.tangents.col(0).normalized(),
+                     along_b = b.jet.tangents.col(0).normalized();
+  n = d;
+  if (a.jet.dimension == 1 && b.jet.dimension == 1) {
+    n = along_a.cross(along_b);
   } else if (a.jet.dimension + b.jet.dimension == 1) {
-    const Vec3<double> along = (a.jet.dimension == 1 ? Vec3<double>(pose_.R * a.jet.tangents.col(0))
-                                                     : Vec3<double>(b.jet.tangents.col(0)))
-                                   .normalized();
+    const Vec3<double>& along = a.jet.dimension == 1 ? along_a : along_b;
     n -= n.dot(along) * along;
   }
-  if (!(n.squaredNorm() > 0)) n = outward;
+  if (is_short(n)) n = outward;
+  if (is_short(n)) n = b.bound.axis;
   return (n.dot(outward) < 0 ? Vec3<double>(-n) : n).normalized();
 }
 
@@ -147,7 +154,7 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
         return false;
   const int dimension = a.dimension + b.dimension;
   if (dimension < 2) return at.gap > 0;
-  if (dimension == 2) return true;
+  if (dimension == 2) return a.dimension == 1 || is_nearest(a.dimension == 2 ? a : b, at);
   const Matrix32 P = plane_basis(at.normal);
   double least = 0;  // second derivative of the distance by a length, times size_
   if (dimension == 3) {
@@ -175,14 +182,14 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
 NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNormal& result) const {
   result.a = a.middle;
   result.b = b.middle;
+  result.gap = std::numeric_limits<double>::quiet_NaN();
   FeatureJet of_a = a.jet, of_b = b.jet;
   const double radius_a = a.bound.radius, radius_b = b.bound.radius;
-  double length = 0;  // of the last step
   for (int k = 0; k < kMaxNormalSteps; ++k) {
     const FeatureJet in_b = turned(of_a);
     NormalStep next = step(in_b, of_b, result.normal);
+    if (!next.is_finite()) return End::failed;
     result.gap = next.gap;
-    if (!next.turn.allFinite() || !next.a.allFinite() || !next.b.allFinite()) return End::failed;
     const double share =
         std::min({k < kFullSteps ? 1.0 : 0.5, kLongestNormalTurn / next.turn.norm(),
                   kLongestMove * radius_a / next.length_a, kLongestMove * radius_b / next.length_b});
@@ -198,15 +205,15 @@ NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNor
     of_b = b_.evaluate(result.b);
     if ((of_a.x - a.jet.x).norm() > kFarthest * radius_a || (of_b.x - b.jet.x).norm() > kFarthest * radius_b)
       return End::none;
-    length = std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_});
-    if (!(length < kLastNormalStep)) continue;
+    if (!(std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_}) < kLastNormalStep))
+      continue;
     const FeatureJet last = turned(of_a);
     result.x = last.x;
     result.y = of_b.x;
     result.gap = result.normal.dot(last.x - of_b.x);
     return is_least(last, of_b, result) ? End::found : End::none;
   }
-  return length > kStillMoves ? End::none : End::failed;
+  return End::failed;
 }
 
 }  // namespace pliant

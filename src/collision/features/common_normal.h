@@ -8,6 +8,8 @@
 // is positive definite for all changes with x' ds_a = y' ds_b.
 #pragma once
 
+#include <cmath>
+
 #include "patch_tree.h"
 
 namespace pliant {
@@ -28,6 +30,8 @@ struct NormalStep {
   double gap;                 ///< value of L to which the step leads, to second order, m
   Vec3<double> x, y;          ///< points to which the step leads, to first order, m
   double length_a, length_b;  ///< lengths of the changes of x and y, m
+
+  bool is_finite() const { return turn.allFinite() && a.allFinite() && b.allFinite() && std::isfinite(gap); }
 };
 
 class NormalSearch {
@@ -41,7 +45,8 @@ class NormalSearch {
   /// Returns the step from the middles of two patches with the normal n.
   NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
   /// How a search ends: at a point with a common normal at which the distance is least; at another point, or
-  /// too far from its start; or without result. Then result.gap is about the last gap of the search.
+  /// too far from its start; or without result. Then result.gap is about the last gap of the search, NaN if
+  /// there is none.
   enum class End { found, none, failed };
   /// Searches from the middles of two patches and the normal result.normal.
   End search(const Patch& a, const Patch& b, CommonNormal& result) const;
