@@ -315,17 +315,17 @@ TEST_CASE("two tori that overlap by more than half their thickness touch", "[con
   }
 }
 
-TEST_CASE("a vertex touches a hollow face only where it is nearer than the radius of the face", "[contact]") {
-  // A corner of a box points along the axis of a ring at the middle of the ring. All points of the inner
-  // circle are equally far; a corner beside the axis has one nearest point there, and the point across is
-  // farther.
-  const Kind corner{"corner",
-                    "box",
-                    {"taper"},
-                    {{"a1", 0.02}, {"a2", 0.02}, {"a3", 0.1}, {"taper.tx", -0.95}, {"taper.ty", -0.95}}};
-  Pair pair(corner, kinds()[0]);
-  pair.part_b.place({0.02, 0, 0.1});
-  for (const Contact& contact : contacts_of(pair, 0.08)) CHECK(contact.gap < 0.04);
+TEST_CASE("a vertex touches a hollow face only within the radius of curvature of the face", "[contact]") {
+  // A corner of a small box in the hole of a ring points across the hole, whose radius is 0.04 m. The
+  // distance from the corner to the ring ahead is largest, not least, among the points of the inner circle
+  // near it.
+  const Kind cube{"cube", "box", {}, {{"a1", 0.004}, {"a2", 0.004}, {"a3", 0.004}}};
+  Pair pair(cube, kinds()[0]);
+  pair.part_a.place({-0.02, 0, 0},
+                    Eigen::Quaterniond::FromTwoVectors(Vec3<double>(1, 1, 1), Vec3<double>::UnitX()));
+  const std::vector<Contact> found = contacts_of(pair, 0.06);
+  CHECK(least_gap(found) < 0.02);
+  for (const Contact& contact : found) CHECK(contact.gap < 0.04);
 }
 
 }  // namespace feature_pairs_test
