@@ -328,4 +328,14 @@ TEST_CASE("a vertex touches a hollow face only within the radius of curvature of
   for (const Contact& contact : found) CHECK(contact.gap < 0.04);
 }
 
+TEST_CASE("of contacts that overlap none is dropped", "[contact]") {
+  Pair pair(kinds()[0], kinds()[0]);
+  for (const double overlap : {0.0, 1e-3}) {
+    pair.part_b.place({0, 0, 0.04 - overlap});
+    const std::size_t count = contacts_of(pair, 1e-9).size();
+    CAPTURE(overlap, count);
+    CHECK((count > 8) == (overlap > 0));
+  }
+}
+
 }  // namespace feature_pairs_test

@@ -13,9 +13,6 @@ namespace {
 /// kFirstMove radii of the patches, and to a normal within kFirstTurn angles of their cones plus kTurnSlack
 /// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
-/// Two patches are not searched if their middles are within kCovered radii of a known contact, or if the
-/// first step leads to points within kLeadsTo radii of it.
-constexpr double kCovered = 1.5, kLeadsTo = 1.2;
 /// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
 constexpr double kOneContactCosine = 0.98;
 /// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
@@ -92,12 +89,11 @@ class PairSearch {
 
   /// Searches two patches and adds a contact to `found`. Returns false if the search fails.
   bool add(const Patch& a, const Patch& b, std::vector<CommonNormal>& found) {
-    if (is_known(a, b, pose_(a.bound.centre), b.bound.centre, kCovered)) return true;
     CommonNormal at;
     at.normal = search_.start(a, b);
     const NormalStep first = search_.step(a, b, at.normal);
     if (!first.is_finite()) return false;
-    if (!can_lead_to_contact(a, b, first) || is_known(a, b, first.x, first.y, kLeadsTo)) return true;
+    if (!can_lead_to_contact(a, b, first) || is_known(a, b, first)) return true;
     const NormalSearch::End end = search_.search(a, b, at);
     if (end == NormalSearch::End::none) return true;
     if (end == NormalSearch::End::failed) return std::isfinite(at.gap) && !is_within_limits(at.gap);
@@ -125,12 +121,11 @@ class PairSearch {
     });
   }
   bool is_within_limits(double gap) const { return gap <= limits_.max_gap && gap >= -limits_.max_depth; }
-  /// Whether points x of a and y of b are within some radii of a known contact of the same features.
-  bool is_known(const Patch& a, const Patch& b, const Vec3<double>& x, const Vec3<double>& y,
-                double radii) const {
+  /// Whether the first step leads to a known contact of the same features.
+  bool is_known(const Patch& a, const Patch& b, const NormalStep& first) const {
     return std::any_of(known_.begin(), known_.end(), [&](const CommonNormal& at) {
       return at.a.feature == a.middle.feature && at.b.feature == b.middle.feature &&
-             (at.x - x).norm() <= radii * a.bound.radius && (at.y - y).norm() <= radii * b.bound.radius;
+             (at.x - first.x).norm() <= limits_.one_point && (at.y - first.y).norm() <= limits_.one_point;
     });
   }
   /// Whether the first step leads to a possible contact.
