@@ -13,6 +13,8 @@ namespace {
 /// kFirstMove radii of the patches, and to a normal within kFirstTurn angles of their cones plus kTurnSlack
 /// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
+/// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
+constexpr double kLeadsTo = 0.5;
 /// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
 constexpr double kOneContactCosine = 0.98;
 /// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
@@ -121,11 +123,12 @@ class PairSearch {
     });
   }
   bool is_within_limits(double gap) const { return gap <= limits_.max_gap && gap >= -limits_.max_depth; }
-  /// Whether the first step leads to a known contact of the same features.
+  /// Whether the first step leads to near a known contact of the same features.
   bool is_known(const Patch& a, const Patch& b, const NormalStep& first) const {
     return std::any_of(known_.begin(), known_.end(), [&](const CommonNormal& at) {
       return at.a.feature == a.middle.feature && at.b.feature == b.middle.feature &&
-             (at.x - first.x).norm() <= limits_.one_point && (at.y - first.y).norm() <= limits_.one_point;
+             (at.x - first.x).norm() <= kLeadsTo * a.bound.radius &&
+             (at.y - first.y).norm() <= kLeadsTo * b.bound.radius;
     });
   }
   /// Whether the first step leads to a possible contact.
