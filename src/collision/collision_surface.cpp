@@ -187,9 +187,7 @@ CollisionSurface::CollisionSurface(const Part& part)
 CollisionSurface::~CollisionSurface() = default;
 
 const PartPatches* CollisionSurface::rest_patches() const {
-  const ParameterValues<double> rest = part_->parameters().rest();
-  if (!patches_known_ && PartFeatures::exist(*part_, rest))
-    patches_ = std::make_unique<PartPatches>(*part_, rest);
+  if (!patches_known_) patches_ = PartPatches::make(*part_, part_->parameters().rest());
   patches_known_ = true;
   return patches_.get();
 }

@@ -260,4 +260,82 @@ TEST_CASE("edges of separate solids that pass each other do not touch", "[contac
   CHECK(apart > 10);
 }
 
+TEST_CASE("contacts of pointed superquadrics are found where their surfaces overlap", "[contact]") {
+  // Up to an exponent of 1.4 common normals find them, above it the search on both surfaces.
+  Draws draws(11);
+  for (const double exponent : {0.65, 1.3, 1.5, 1.8}) {
+    CAPTURE(exponent);
+    const Kind ring{
+        "ring",
+        "supertoroid",
+        {},
+        {{"a1", 0.02}, {"a2", 0.02}, {"a3", 0.03}, {"a4", 3}, {"eps1", exponent}, {"eps2", exponent}}};
+    Worst above;
+    for (int trial = 0; trial < 12; ++trial) {
+      Pair pair(ring, ring);
+      const double sampled = place_near(pair, draws, 0.004);
+      above.note(least_gap(contacts_of(pair, 0.01)) - sampled);
+    }
+    CHECK(above < (exponent > 1.4 ? 2e-3 : 1e-12));
+  }
+}
+
+TEST_CASE("solids with a full taper touch another part", "[contact]") {
+  const Part::Named taper{{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}, {"taper.tx", -1}, {"taper.ty", -1}};
+  const Kind pyramid{"pyramid", "box", {"taper"}, taper}, drop{"drop", "ellipsoid", {"taper"}, taper};
+  for (const Kind* kind : {&pyramid, &drop})
+    for (const Kind* other : {&kinds()[0], &kinds()[6]}) {
+      CAPTURE(kind->name, other->name);
+      Draws draws(12);
+      Worst above, below;
+      for (int trial = 0; trial < 8; ++trial) {
+        Pair pair(*kind, *other);
+        const double sampled = place_near(pair, draws, 0.004), gap = least_gap(contacts_of(pair, 0.02));
+        above.note(gap - sampled);
+        below.note(sampled - gap);
+      }
+      CHECK(above < 2e-3);
+      CHECK(below < 4e-3);
+    }
+}
+
+TEST_CASE("two tori that overlap by more than half their thickness touch", "[contact]") {
+  const Kind& torus = kinds()[0];  // a tube of radius 0.02 m
+  for (const double overlap : {0.4, 0.7}) {
+    CAPTURE(overlap);
+    Pair on_top(torus, torus);
+    on_top.part_b.place({0, 0, 0.04 * (1 - overlap)});
+    CHECK(least_gap(contacts_of(on_top, 1e-3)) < 0);
+    Pair beside(torus, torus);
+    beside.part_b.place({0.16 - 0.04 * overlap, 0, 0});
+    CHECK(least_gap(contacts_of(beside, 1e-3)) < 0);
+    Pair crossed(torus, torus);  // the rings cross at two points
+    crossed.part_b.place({0.06, 0, 0.04 * (1 - overlap)});
+    CHECK(least_gap(contacts_of(crossed, 1e-3)) < 0);
+  }
+}
+
+TEST_CASE("a vertex touches a hollow face only within the radius of curvature of the face", "[contact]") {
+  // A corner of a small box in the hole of a ring points across the hole, whose radius is 0.04 m. The
+  // distance from the corner to the ring ahead is largest, not least, among the points of the inner circle
+  // near it.
+  const Kind cube{"cube", "box", {}, {{"a1", 0.004}, {"a2", 0.004}, {"a3", 0.004}}};
+  Pair pair(cube, kinds()[0]);
+  pair.part_a.place({-0.02, 0, 0},
+                    Eigen::Quaterniond::FromTwoVectors(Vec3<double>(1, 1, 1), Vec3<double>::UnitX()));
+  const std::vector<Contact> found = contacts_of(pair, 0.06);
+  CHECK(least_gap(found) < 0.02);
+  for (const Contact& contact : found) CHECK(contact.gap < 0.04);
+}
+
+TEST_CASE("of contacts that overlap none is dropped", "[contact]") {
+  Pair pair(kinds()[0], kinds()[0]);
+  for (const double overlap : {0.0, 1e-3}) {
+    pair.part_b.place({0, 0, 0.04 - overlap});
+    const std::size_t count = contacts_of(pair, 1e-9).size();
+    CAPTURE(overlap, count);
+    CHECK((count > 8) == (overlap > 0));
+  }
+}
+
 }  // namespace feature_pairs_test

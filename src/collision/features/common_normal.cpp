@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -10,18 +11,24 @@ namespace pliant {
 
 namespace {
 
-/// After kFullSteps steps all steps are halved, because full steps can alternate between both sides of a line
-/// at which the curvature of a surface jumps.
-constexpr int kMaxNormalSteps = 60, kFullSteps = 8;
+/// After kFullSteps steps most steps are halved, because full steps can alternate between both sides of a
+/// line at which the curvature of a surface jumps.
+constexpr int kMaxNormalSteps = 40, kFullSteps = 8;
+/// A step is not halved if it is shorter than the last one by this factor.
+constexpr double kShrinks = 0.6;
+/// Damping of the search for the least residual: value at the first step, and factor by which it changes.
+constexpr double kFirstDamping = 1e-2, kDampingFactor = 4;
+constexpr int kMaxDampedSteps = 100;
+/// A least residual above this is not zero.
+constexpr double kNoCommonNormal = 1e-6;
 /// Longest step of the normal, rad, and of a point, in radii of its patch.
 constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
 /// The search ends without result if a point is farther from the middle of its patch than this, in radii.
 constexpr double kFarthest = 4;
 /// The search ends after a step that is shorter than this (rad, and sizes).
 constexpr double kLastNormalStep = 1e-8;
-/// After kMaxNormalSteps steps that are longer than this (rad, and sizes) there is no common normal nearby:
-/// the search alternates between both sides of a line at which the curvature jumps. Otherwise it has failed.
-constexpr double kStillMoves = 1e-4;
+/// Vectors shorter than this (without unit, and in sizes) have no direction from which a search can start.
+constexpr double kShortest = 1e-6;
 /// Added to the diagonal of the Hessian, in units of 1 / size, so that the Hessian can be inverted where
 /// points with common normals form a curve.
 constexpr double kStiffness = 1e-9;
@@ -31,7 +38,6 @@ constexpr double kConstantDistance = 1e-6;
 /// The normal at an edge or vertex may be outside the normals of the adjacent faces by this angle, rad.
 constexpr double kOnCone = 1e-7;
 
-using Hessian = Eigen::Matrix<double, 6, 6>;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
 /// Returns the second derivatives of n . x by the coordinates.
@@ -45,6 +51,14 @@ Eigen::Vector2d tangent_lengths(const FeatureJet& jet) {
   Eigen::Vector2d length(1, 1);
   for (int k = 0; k < jet.dimension; ++k) length[k] = jet.tangents.col(k).norm();
   return length;
+}
+
+/// Whether the distance of a vertex from the points of a face is least at a point with a common normal, to
+/// second order: 1 + g kappa > 0 for the curvatures kappa of the face, positive where it is convex.
+bool is_nearest(const FeatureJet& face, const CommonNormal& at) {
+  const Vec3<double> to_vertex = at.gap * face.normal;
+  const Eigen::Matrix2d H = face.tangents.transpose() * face.tangents - height_curvature(face, to_vertex);
+  return H.trace() > 0 && H.determinant() > 0;
 }
 
 Matrix32 plane_basis(const Vec3<double>& n) {
@@ -68,34 +82,33 @@ FeatureJet NormalSearch::turned(FeatureJet jet) const {
 }
 
 Vec3<double> NormalSearch::start(const Patch& a, const Patch& b) const {
-  const Vec3<double> outward = b.bound.axis - pose_.R * a.bound.axis;
-  if (b.jet.dimension == 2 || a.jet.dimension == 2) {
-    Vec3<double> n = Vec3<double>::Zero();
-    if (b.jet.dimension == 2) n += b.jet.normal;
-    if (a.jet.dimension == 2) n -= pose_.R * a.jet.normal;
-    return n.normalized();
-  }
-  const Vec3<double> d = pose_(a.jet.x) - b.jet.x;
-  Vec3<double> n = d;
-  if (a.jet.dimension + b.jet.dimension == 2) {
-    n = Vec3<double>(pose_.R * a.jet.tangents.col(0)).cross(b.jet.tangents.col(0));
+  const Vec3<double> outward = b.bound.axis - pose_.R * a.bound.axis, d = (pose_(a.jet.x) - b.jet.x) / size_;
+  auto is_short = [](const Vec3<double>& n) { return !(n.squaredNorm() > kShortest * kShortest); };
+  Vec3<double> n = Vec3<double>::Zero();
+  if (b.jet.dimension == 2) n += b.jet.normal;
+  if (a.jet.dimension == 2) n -= pose_.R * a.jet.normal;
+  if (!is_short(n)) return n.normalized();
+  const Vec3<double> along_a = pose_.R * a.jet.tangents.col(0).normalized(),
+                     along_b = b.jet.tangents.col(0).normalized();
+  n = d;
+  if (a.jet.dimension == 1 && b.jet.dimension == 1) {
+    n = along_a.cross(along_b);
   } else if (a.jet.dimension + b.jet.dimension == 1) {
-    const Vec3<double> along = (a.jet.dimension == 1 ? Vec3<double>(pose_.R * a.jet.tangents.col(0))
-                                                     : Vec3<double>(b.jet.tangents.col(0)))
-                                   .normalized();
+    const Vec3<double>& along = a.jet.dimension == 1 ? along_a : along_b;
     n -= n.dot(along) * along;
   }
-  if (!(n.squaredNorm() > 0)) n = outward;
+  if (is_short(n)) n = outward;
+  if (is_short(n)) n = b.bound.axis;
   return (n.dot(outward) < 0 ? Vec3<double>(-n) : n).normalized();
 }
 
-NormalStep NormalSearch::step(const FeatureJet& a, const FeatureJet& b, const Vec3<double>& n) const {
-  // The unknowns are lengths along the tangents in units of size_, and the turn of n.
-  const Matrix32 P = plane_basis(n);
-  const Eigen::Vector2d of_a = tangent_lengths(a), of_b = tangent_lengths(b);
-  const Vec3<double> d = a.x - b.x;
-  Hessian H = Hessian::Zero();
-  Vec<double, 6> residual = Vec<double, 6>::Zero();
+NormalSearch::System NormalSearch::system(const Place& at) const {
+  const Vec3<double>& n = at.normal;
+  const Vec3<double> d = at.of_a.x - at.of_b.x;
+  System system{Eigen::Matrix<double, 6, 6>::Zero(), Vec<double, 6>::Zero(), plane_basis(n), tangent_lengths(at.of_a),
+                tangent_lengths(at.of_b)};
+  auto& H = system.hessian;
+  auto& residual = system.residual;
   auto add_side = [&](const FeatureJet& jet, const Eigen::Vector2d& length, int first, double sign) {
     const Matrix32 unit = jet.tangents * length.cwiseInverse().asDiagonal();
     const Eigen::Matrix2d W = height_curvature(jet, n);
@@ -109,30 +122,54 @@ NormalStep NormalSearch::step(const FeatureJet& a, const FeatureJet& b, const Ve
       H(first + i, first + i) += kStiffness;
       residual[first + i] = sign * n.dot(unit.col(i));
     }
-    H.block<2, 2>(first, 4) = sign * unit.transpose() * P;
+    H.block<2, 2>(first, 4) = sign * unit.transpose() * system.plane;
     H.block<2, 2>(4, first) = H.block<2, 2>(first, 4).transpose();
   };
-  add_side(a, of_a, 0, 1);
-  add_side(b, of_b, 2, -1);
+  add_side(at.of_a, system.of_a, 0, 1);
+  add_side(at.of_b, system.of_b, 2, -1);
   H(4, 4) = H(5, 5) = -n.dot(d) / size_;
-  residual.tail<2>() = P.transpose() * d / size_;
-  const Vec<double, 6> z = H.partialPivLu().solve(-residual);
+  residual.tail<2>() = system.plane.transpose() * d / size_;
+  return system;
+}
+
+/// Returns the step with the changes z of the unknowns of a system.
+NormalStep NormalSearch::step(const Place& at, const System& system, const Vec<double, 6>& z) const {
   NormalStep step;
-  step.a = size_ * z.head<2>().cwiseQuotient(of_a);
-  step.b = size_ * z.segment<2>(2).cwiseQuotient(of_b);
-  step.turn = P * z.tail<2>();
-  step.normal = (n + step.turn).normalized();
-  step.gap = n.dot(d) + 0.5 * size_ * residual.dot(z);
-  const Vec3<double> move_a = a.tangents * step.a, move_b = b.tangents * step.b;
-  step.x = a.x + move_a;
-  step.y = b.x + move_b;
+  step.a = size_ * z.head<2>().cwiseQuotient(system.of_a);
+  step.b = size_ * z.segment<2>(2).cwiseQuotient(system.of_b);
+  step.turn = system.plane * z.tail<2>();
+  step.normal = (at.normal + step.turn).normalized();
+  step.gap = at.normal.dot(at.of_a.x - at.of_b.x) + 0.5 * size_ * system.residual.dot(z);
+  const Vec3<double> move_a = at.of_a.tangents * step.a, move_b = at.of_b.tangents * step.b;
+  step.x = at.of_a.x + move_a;
+  step.y = at.of_b.x + move_b;
   step.length_a = move_a.norm();
   step.length_b = move_b.norm();
   return step;
 }
 
+NormalStep NormalSearch::step(const Place& at) const {
+  const System now = system(at);
+  return step(at, now, now.hessian.partialPivLu().solve(-now.residual));
+}
+
+NormalSearch::Place NormalSearch::middles(const Patch& a, const Patch& b, const Vec3<double>& n) const {
+  return {a.middle, b.middle, turned(a.jet), b.jet, n};
+}
+
+/// Returns the place to which a share of a step leads.
+NormalSearch::Place NormalSearch::moved(const Place& at, const NormalStep& step, double share) const {
+  Place next;
+  next.a = a_.moved(at.a, at.of_a, share * step.a);
+  next.b = b_.moved(at.b, at.of_b, share * step.b);
+  next.of_a = turned(a_.evaluate(next.a));
+  next.of_b = b_.evaluate(next.b);
+  next.normal = (at.normal + share * step.turn).normalized();
+  return next;
+}
+
 NormalStep NormalSearch::step(const Patch& a, const Patch& b, const Vec3<double>& n) const {
-  return step(turned(a.jet), b.jet, n);
+  return step(middles(a, b, n));
 }
 
 /// Whether a point with a common normal is a contact: the normal is that of both sides, and the distance is
@@ -147,7 +184,7 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
         return false;
   const int dimension = a.dimension + b.dimension;
   if (dimension < 2) return at.gap > 0;
-  if (dimension == 2) return true;
+  if (dimension == 2) return a.dimension == 1 || is_nearest(a.dimension == 2 ? a : b, at);
   const Matrix32 P = plane_basis(at.normal);
   double least = 0;  // second derivative of the distance by a length, times size_
   if (dimension == 3) {
@@ -172,41 +209,66 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
   return least > (closed ? -kConstantDistance : kConstantDistance);
 }
 
+/// Returns the end of a search that has converged, and sets the result.
+NormalSearch::End NormalSearch::end_at(const Place& at, CommonNormal& result) const {
+  result = {at.a, at.b, at.of_a.x, at.of_b.x, at.normal, at.normal.dot(at.of_a.x - at.of_b.x)};
+  return is_least(at.of_a, at.of_b, result) ? End::found : End::none;
+}
+
 NormalSearch::End NormalSearch::search(const Patch& a, const Patch& b, CommonNormal& result) const {
-  result.a = a.middle;
-  result.b = b.middle;
-  FeatureJet of_a = a.jet, of_b = b.jet;
-  const double radius_a = a.bound.radius, radius_b = b.bound.radius;
-  double length = 0;  // of the last step
+  const Place start = middles(a, b, result.normal);
+  Place at = start;
+  double last = 0;  // length of the last step before it is shortened
+  result.gap = std::numeric_limits<double>::quiet_NaN();
   for (int k = 0; k < kMaxNormalSteps; ++k) {
-    const FeatureJet in_b = turned(of_a);
-    NormalStep next = step(in_b, of_b, result.normal);
+    const NormalStep next = step(at);
+    if (!next.is_finite()) return End::failed;
     result.gap = next.gap;
-    if (!next.turn.allFinite() || !next.a.allFinite() || !next.b.allFinite()) return End::failed;
-    const double share =
-        std::min({k < kFullSteps ? 1.0 : 0.5, kLongestNormalTurn / next.turn.norm(),
-                  kLongestMove * radius_a / next.length_a, kLongestMove * radius_b / next.length_b});
-    if (share < 1) {
-      next.a *= share;
-      next.b *= share;
-      next.turn *= share;
-    }
-    result.a = a_.moved(result.a, of_a, next.a);
-    result.b = b_.moved(result.b, of_b, next.b);
-    result.normal = (result.normal + next.turn).normalized();
-    of_a = a_.evaluate(result.a);
-    of_b = b_.evaluate(result.b);
-    if ((of_a.x - a.jet.x).norm() > kFarthest * radius_a || (of_b.x - b.jet.x).norm() > kFarthest * radius_b)
-      return End::none;
-    length = std::max({next.turn.norm(), next.length_a / size_, next.length_b / size_});
-    if (!(length < kLastNormalStep)) continue;
-    const FeatureJet last = turned(of_a);
-    result.x = last.x;
-    result.y = of_b.x;
-    result.gap = result.normal.dot(last.x - of_b.x);
-    return is_least(last, of_b, result) ? End::found : End::none;
+    const double length = next.length(size_);
+    const double share = std::min(
+        {k < kFullSteps || length < kShrinks * last ? 1.0 : 0.5, kLongestNormalTurn / next.turn.norm(),
+         kLongestMove * a.bound.radius / next.length_a, kLongestMove * b.bound.radius / next.length_b});
+    last = length;
+    at = moved(at, next, share);
+    if (is_far(at, a, b)) return End::none;
+    if (length < kLastNormalStep) return end_at(at, result);
   }
-  return length > kStillMoves ? End::none : End::failed;
+  return search_least_residual(a, b, start, result);
+}
+
+/// Whether a point is too far from the middle of its patch.
+bool NormalSearch::is_far(const Place& at, const Patch& a, const Patch& b) const {
+  return (at.of_a.x - pose_(a.jet.x)).norm() > kFarthest * a.bound.radius ||
+         (at.of_b.x - b.jet.x).norm() > kFarthest * b.bound.radius;
+}
+
+/// Minimises the norm of the residual (Levenberg 1944, Marquardt 1963) where Newton's method does not
+/// converge. If the least residual is not zero there is no common normal nearby.
+NormalSearch::End NormalSearch::search_least_residual(const Patch& a, const Patch& b, Place at,
+                                                      CommonNormal& result) const {
+  System now = system(at);
+  double damping = kFirstDamping;
+  for (int k = 0; k < kMaxDampedSteps; ++k) {
+    Eigen::Matrix<double, 6, 6> H = now.hessian.transpose() * now.hessian;
+    H.diagonal().array() += damping;
+    const NormalStep next = step(at, now, H.ldlt().solve(-now.hessian.transpose() * now.residual));
+    if (!next.is_finite()) return End::failed;
+    const Place there = moved(at, next, 1);
+    const System then = system(there);
+    const bool is_better = then.residual.norm() < now.residual.norm();
+    damping *= is_better ? 1 / kDampingFactor : kDampingFactor;
+    if (is_better) {
+      at = there;
+      now = then;
+      result.gap = next.gap;
+      if (is_far(at, a, b)) return End::none;
+    }
+    if (next.length(size_) < kLastNormalStep) {
+      if (now.residual.norm() > kNoCommonNormal) return End::none;
+      return end_at(at, result);
+    }
+  }
+  return End::failed;
 }
 
 }  // namespace pliant

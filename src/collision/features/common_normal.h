@@ -8,6 +8,9 @@
 // is positive definite for all changes with x' ds_a = y' ds_b.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "patch_tree.h"
 
 namespace pliant {
@@ -28,6 +31,10 @@ struct NormalStep {
   double gap;                 ///< value of L to which the step leads, to second order, m
   Vec3<double> x, y;          ///< points to which the step leads, to first order, m
   double length_a, length_b;  ///< lengths of the changes of x and y, m
+
+  /// Returns the largest of the turn (rad) and both lengths, in units of `size` (m).
+  double length(double size) const { return std::max({turn.norm(), length_a / size, length_b / size}); }
+  bool is_finite() const { return turn.allFinite() && a.allFinite() && b.allFinite() && std::isfinite(gap); }
 };
 
 class NormalSearch {
@@ -41,14 +48,36 @@ class NormalSearch {
   /// Returns the step from the middles of two patches with the normal n.
   NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
   /// How a search ends: at a point with a common normal at which the distance is least; at another point, or
-  /// too far from its start; or without result. Then result.gap is about the last gap of the search.
+  /// too far from its start; or without result. Then result.gap is about the last gap of the search, NaN if
+  /// there is none.
   enum class End { found, none, failed };
   /// Searches from the middles of two patches and the normal result.normal.
   End search(const Patch& a, const Patch& b, CommonNormal& result) const;
 
  private:
+  /// A place of the search: two points with their derivatives in the frame of b, and a normal.
+  struct Place {
+    FeaturePoint a, b;
+    FeatureJet of_a, of_b;
+    Vec3<double> normal;
+  };
+  /// The system of equations for a step from a place. The unknowns are lengths along the tangents in sizes,
+  /// and the turn of the normal along two vectors, rad.
+  struct System {
+    Eigen::Matrix<double, 6, 6> hessian;
+    Vec<double, 6> residual;
+    Eigen::Matrix<double, 3, 2> plane;  ///< the two vectors normal to the normal
+    Eigen::Vector2d of_a, of_b;         ///< lengths of the tangents; 1 for those that do not exist
+  };
   FeatureJet turned(FeatureJet jet) const;
-  NormalStep step(const FeatureJet& a, const FeatureJet& b, const Vec3<double>& n) const;
+  Place middles(const Patch& a, const Patch& b, const Vec3<double>& n) const;
+  System system(const Place& at) const;
+  NormalStep step(const Place& at, const System& system, const Vec<double, 6>& z) const;
+  NormalStep step(const Place& at) const;
+  Place moved(const Place& at, const NormalStep& step, double share) const;
+  bool is_far(const Place& at, const Patch& a, const Patch& b) const;
+  End end_at(const Place& at, CommonNormal& result) const;
+  End search_least_residual(const Patch& a, const Patch& b, Place at, CommonNormal& result) const;
   bool is_least(const FeatureJet& a, const FeatureJet& b, const CommonNormal& at) const;
 
   const PartFeatures &a_, &b_;

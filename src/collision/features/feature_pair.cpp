@@ -1,6 +1,7 @@
 #include "feature_pair.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Geometry>
 
@@ -12,9 +13,8 @@ namespace {
 /// kFirstMove radii of the patches, and to a normal within kFirstTurn angles of their cones plus kTurnSlack
 /// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
-/// Two patches are not searched if their middles are within kCovered radii of a known contact, or if the
-/// first step leads to points within kLeadsTo radii of it.
-constexpr double kCovered = 1.5, kLeadsTo = 1.2;
+/// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
+constexpr double kLeadsTo = 0.5;
 /// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
 constexpr double kOneContactCosine = 0.98;
 /// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
@@ -24,7 +24,7 @@ constexpr int kEdgeSamples = 3;
 /// The candidates of a pair of parts stay valid while the parts move by at most this relative to each other,
 /// in sizes of the smaller part.
 constexpr double kMargin = 0.1;
-/// A pair with more contacts, along a curve on which the distance is constant, keeps this many.
+/// Of contacts that are level along a curve or face, a pair with more contacts keeps this many.
 constexpr std::size_t kMaxOnCurve = 8;
 
 /// Adds a contact; of contacts that are one, the deepest is kept.
@@ -38,24 +38,41 @@ void add_contact(const CommonNormal& at, double one_point, std::vector<CommonNor
     *twin = at;
 }
 
-/// Keeps the deepest contact and those that are farthest apart.
-void keep_outermost(std::vector<CommonNormal>& found) {
-  std::iter_swap(found.begin(),
-                 std::min_element(found.begin(), found.end(),
-                                  [](const auto& one, const auto& other) { return one.gap < other.gap; }));
-  for (std::size_t n = 1; n < kMaxOnCurve; ++n) {
-    const auto kept = found.begin() + static_cast<std::ptrdiff_t>(n);
+/// Keeps those of contacts first, ..., last - 1 that are farthest apart, the first one among them. Returns
+/// the end of the kept contacts.
+template <class Iterator>
+Iterator move_outermost(Iterator first, Iterator last) {
+  auto kept = first + 1;
+  for (std::size_t n = 1; n < kMaxOnCurve && kept != last; ++n, ++kept) {
     auto distance = [&](const CommonNormal& at) {
-      double least = (at.x - found[0].x).norm();
-      for (auto other = found.begin() + 1; other < kept; ++other)
-        least = std::min(least, (at.x - other->x).norm());
+      double least = (at.x - first->x).norm();
+      for (auto other = first + 1; other < kept; ++other) least = std::min(least, (at.x - other->x).norm());
       return least;
     };
-    std::iter_swap(kept, std::max_element(kept, found.end(), [&](const auto& one, const auto& other) {
+    std::iter_swap(kept, std::max_element(kept, last, [&](const auto& one, const auto& other) {
                      return distance(one) < distance(other);
                    }));
   }
-  found.resize(kMaxOnCurve);
+  return kept;
+}
+
+/// Of contacts that have equal gaps, and equal features or equal normals, keeps those that are farthest
+/// apart. All overlaps are kept. size: of the smaller part, m.
+void keep_outermost(std::vector<CommonNormal>& found, double size) {
+  auto first = std::stable_partition(found.begin(), found.end(),
+                                     [&](const CommonNormal& at) { return at.gap < -kShallow * size; });
+  while (first != found.end()) {
+    std::iter_swap(first, std::min_element(first, found.end(), [](const auto& one, const auto& other) {
+                     return one.gap < other.gap;
+                   }));
+    const CommonNormal lowest = *first;
+    const auto level_end = std::stable_partition(first, found.end(), [&](const CommonNormal& at) {
+      return at.gap - lowest.gap <= kShallow * size &&
+             ((at.a.feature == lowest.a.feature && at.b.feature == lowest.b.feature) ||
+              at.normal.dot(lowest.normal) > kOneContactCosine);
+    });
+    first = found.erase(move_outermost(first, level_end), level_end);
+  }
 }
 
 /// The search for the contacts of one pair of parts.
@@ -74,27 +91,44 @@ class PairSearch {
 
   /// Searches two patches and adds a contact to `found`. Returns false if the search fails.
   bool add(const Patch& a, const Patch& b, std::vector<CommonNormal>& found) {
-    if (is_known(a, b, pose_(a.bound.centre), b.bound.centre, kCovered)) return true;
     CommonNormal at;
     at.normal = search_.start(a, b);
     const NormalStep first = search_.step(a, b, at.normal);
-    if (!can_lead_to_contact(a, b, first) || is_known(a, b, first.x, first.y, kLeadsTo)) return true;
+    if (!first.is_finite()) return false;
+    if (!can_lead_to_contact(a, b, first) || is_known(a, b, first)) return true;
     const NormalSearch::End end = search_.search(a, b, at);
-    if (end != NormalSearch::End::found) return end == NormalSearch::End::none || !is_within_limits(at.gap);
+    if (end == NormalSearch::End::none) return true;
+    if (end == NormalSearch::End::failed) return std::isfinite(at.gap) && !is_within_limits(at.gap);
     known_.push_back(at);
     if (is_within_limits(at.gap) && (at.gap > -kShallow * limits_.size || is_overlap(at)))
       add_contact(at, limits_.one_point, found);
     return true;
   }
+  /// Whether the parts overlap by more than the largest depth: a deeper contact is known, or the middle of a
+  /// patch of one part is inside the other.
+  bool is_deep() const {
+    const Mat3<double> R = pose_.R.transpose();
+    return std::any_of(
+               known_.begin(), known_.end(),
+               [&](const CommonNormal& at) { return at.gap < -limits_.max_depth && is_overlap(at); }) ||
+           enters(a_, pose_, b_) || enters(b_, {R, -(R * pose_.d)}, a_);
+  }
 
  private:
+  /// Whether the middle of a patch is inside the other part. pose: in the frame of the other part.
+  static bool enters(const PartPatches& part, const RelativePose& pose, const PartPatches& other) {
+    return std::any_of(part.tree.patches().begin(), part.tree.patches().end(), [&](const Patch& patch) {
+      const Vec3<double> x = pose(patch.jet.x);
+      return other.box.contains(x) && other.features.contains(x, kShallow);
+    });
+  }
   bool is_within_limits(double gap) const { return gap <= limits_.max_gap && gap >= -limits_.max_depth; }
-  /// Whether points x of a and y of b are within some radii of a known contact of the same features.
-  bool is_known(const Patch& a, const Patch& b, const Vec3<double>& x, const Vec3<double>& y,
-                double radii) const {
+  /// Whether the first step leads to near a known contact of the same features.
+  bool is_known(const Patch& a, const Patch& b, const NormalStep& first) const {
     return std::any_of(known_.begin(), known_.end(), [&](const CommonNormal& at) {
       return at.a.feature == a.middle.feature && at.b.feature == b.middle.feature &&
-             (at.x - x).norm() <= radii * a.bound.radius && (at.y - y).norm() <= radii * b.bound.radius;
+             (at.x - first.x).norm() <= kLeadsTo * a.bound.radius &&
+             (at.y - first.y).norm() <= kLeadsTo * b.bound.radius;
     });
   }
   /// Whether the first step leads to a possible contact.
@@ -145,31 +179,53 @@ class PairSearch {
 
 }  // namespace
 
-void PatchPairs::update(const PartPatches& a, const PartPatches& b, const RelativePose& now,
-                        const FeatureLimits& limits) {
+std::unique_ptr<PartPatches> PartPatches::make(const Part& part, const ParameterValues<double>& values) {
+  if (!PartFeatures::exist(part, values)) return nullptr;
+  const PartFeatures features(part, values);
+  std::vector<Patch> patches = make_patches(part, values, features);
+  if (!std::all_of(patches.begin(), patches.end(), is_regular)) return nullptr;
+  Eigen::AlignedBox3d box;
+  for (const Patch& patch : patches) {
+    box.extend((patch.bound.centre.array() - patch.bound.radius).matrix());
+    box.extend((patch.bound.centre.array() + patch.bound.radius).matrix());
+  }
+  return std::unique_ptr<PartPatches>(new PartPatches{features, PatchTree(std::move(patches)), box});
+}
+
+const std::vector<PatchPair>& PatchPairs::update(const PartPatches& a, const PartPatches& b,
+                                                 const RelativePose& now, const FeatureLimits& limits) {
   const double margin = kMargin * limits.size, turn = margin / a.tree.radius();
-  const double turned = (now.R - pose.R).norm();
-  if (max_gap >= limits.max_gap && max_gap <= limits.max_gap + margin && turned <= turn &&
-      (now.d - pose.d).norm() + turned * a.tree.radius() <= margin)
-    return;
-  pose = now;
-  max_gap = limits.max_gap + 0.5 * margin;
-  PatchTree::find_pairs(a.tree, b.tree, pose, {max_gap, limits.max_depth, margin, turn}, pairs);
+  auto is_valid = [&](const Kept& old) {
+    // Frobenius norm of the difference: sqrt(8) times the sine of half the angle
+    const double turned = (now.R - old.pose.R).norm() / std::sqrt(2.0);
+    return old.max_gap >= limits.max_gap && old.max_gap <= limits.max_gap + margin && turned <= turn &&
+           (now.d - old.pose.d).norm() + turned * a.tree.radius() <= margin;
+  };
+  if (is_valid(kept[0])) return kept[0].pairs;
+  std::swap(kept[0], kept[1]);
+  if (is_valid(kept[0])) return kept[0].pairs;
+  kept[0].pose = now;
+  kept[0].max_gap = limits.max_gap + 0.5 * margin;
+  PatchTree::find_pairs(a.tree, b.tree, now, {kept[0].max_gap, limits.max_depth, margin, turn},
+                        kept[0].pairs);
+  return kept[0].pairs;
 }
 
 bool touch_features(const PartPatches& a, const PartPatches& b, const RelativePose& pose,
                     const FeatureLimits& limits, PatchPairs& candidates, std::vector<CommonNormal>& found) {
   found.clear();
-  candidates.update(a, b, pose, limits);
   PairSearch search(a, b, pose, limits, candidates.known);
   const PairReach reach{limits.max_gap, limits.max_depth, 0, 0};
-  for (const PatchPair& pair : candidates.pairs) {
+  for (const PatchPair& pair : candidates.update(a, b, pose, limits)) {
     if (!PatchTree::can_touch(a.tree, b.tree, pose, reach, pair)) continue;
     if (!search.add(a.tree.patches()[static_cast<std::size_t>(pair.a)],
                     b.tree.patches()[static_cast<std::size_t>(pair.b)], found))
       return false;
   }
-  if (found.size() > kMaxOnCurve) keep_outermost(found);
+  const bool overlaps =
+      std::any_of(found.begin(), found.end(), [](const CommonNormal& at) { return at.gap < 0; });
+  if (!overlaps && search.is_deep()) return false;
+  if (found.size() > kMaxOnCurve) keep_outermost(found, limits.size);
   return true;
 }
 

@@ -2,7 +2,11 @@
 // among the points near them.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "common_normal.h"
 
@@ -10,10 +14,12 @@ namespace pliant {
 
 /// The features of a part, divided into patches.
 struct PartPatches {
-  PartPatches(const Part& part, const ParameterValues<double>& values)
-      : features(part, values), tree(make_patches(part, values, features)) {}
+  /// Returns the patches of a part, or nullptr if its features are not known or are degenerate at these
+  /// values: a full taper, for example, maps an end face to a line or a point.
+  static std::unique_ptr<PartPatches> make(const Part& part, const ParameterValues<double>& values);
   PartFeatures features;
   PatchTree tree;
+  Eigen::AlignedBox3d box;  ///< contains all patches, body frame, m
 };
 
 /// Which contacts of a pair are found.
@@ -26,14 +32,17 @@ struct FeatureLimits {
 /// Pairs of patches of two parts that can touch near a relative pose. They are kept from search to search
 /// until the parts have moved too far. The contacts do not depend on them.
 struct PatchPairs {
-  std::vector<PatchPair> pairs;
-  RelativePose pose;                ///< of a in the frame of b
+  struct Kept {
+    std::vector<PatchPair> pairs;
+    RelativePose pose;    ///< of a in the frame of b
+    double max_gap = -1;  ///< m; negative: not computed yet
+  };
+  std::array<Kept, 2> kept;         ///< for two limits of the gap, the last used first
   std::vector<CommonNormal> known;  ///< scratch storage of a search
-  double max_gap = -1;              ///< m; negative: not computed yet
 
-  /// Computes the pairs if they are not valid at a pose.
-  void update(const PartPatches& a, const PartPatches& b, const RelativePose& now,
-              const FeatureLimits& limits);
+  /// Returns the pairs at a pose; computes them if no kept ones are valid.
+  const std::vector<PatchPair>& update(const PartPatches& a, const PartPatches& b, const RelativePose& now,
+                                       const FeatureLimits& limits);
 };
 
 /// Finds the contacts of parts a and b. pose: that of a in the frame of b, which is that of `found`, too.

@@ -21,6 +21,8 @@ constexpr double kPatchTurn = 0.5;
 constexpr double kBallMargin = 1.1;
 /// Cones are wider than those of the sampled normals by this angle, rad.
 constexpr double kNormalMargin = 0.03;
+/// Least factor by which a deformation may shorten a tangent, and least sine of the angle between tangents.
+constexpr double kLeastStretch = 1e-6;
 /// The normals at the border of a patch of a mesh are at this share of the way to the neighbours.
 constexpr double kBorder = 0.6;
 
@@ -102,6 +104,20 @@ void add_grid(const PartFeatures& features, int feature, std::vector<Patch>& pat
 }
 
 }  // namespace
+
+bool is_regular(const Patch& patch) {
+  const FeatureJet& jet = patch.jet;
+  const PatchBound& bound = patch.bound;
+  if (!jet.x.allFinite() || !jet.tangents.allFinite() || !jet.second.allFinite() || !jet.normal.allFinite())
+    return false;
+  for (int k = 0; k < jet.dimension; ++k)
+    if (!(jet.tangents.col(k).norm() > kLeastStretch * jet.undeformed_tangents.col(k).norm())) return false;
+  if (jet.dimension == 2 &&
+      !(jet.tangents.col(0).normalized().cross(jet.tangents.col(1).normalized()).norm() > kLeastStretch))
+    return false;
+  return std::isfinite(bound.radius) && std::isfinite(bound.angle) &&
+         std::abs(bound.axis.norm() - 1) < kLeastStretch;
+}
 
 std::vector<Patch> make_patches(const Part& part, const ParameterValues<double>& values,
                                 const PartFeatures& features) {

@@ -16,6 +16,9 @@ constexpr double kJetDifference = 1e-6;
 constexpr double kOnBoundary = 1e-9;
 /// Least semi-axis of a rim, in sizes of the part. The tip of a cone is no rim.
 constexpr double kLeastRim = 1e-3;
+/// Largest exponent of a superquadric. The curvature of a more pointed one changes so much between patches
+/// that Newton's method often does not converge.
+constexpr double kMostPointed = 1.4;
 /// Number of patches of a straight edge of a box along its length, and of a side along its generators.
 constexpr int kPatchesAlong = 4;
 
@@ -32,6 +35,8 @@ bool PartFeatures::exist(const Part& part, const ParameterValues<double>& values
     };
     return std::min(width(0), width(1)) > kLeastRim * part.size();
   }
+  for (int k = 0; k < shape.n_parameters(); ++k)
+    if (shape.parameters()[k].quantity == Quantity::exponent && a[k] > kMostPointed) return false;
   return shape.hull_pieces() > 0 && shape.has_support(a) && !shape.has_flat_regions(a);
 }
 

@@ -54,8 +54,10 @@ class PartFeatures {
   FeatureJet evaluate(const FeaturePoint& point) const;
   /// Returns the point whose coordinates differ by ds from those of a point. jet: evaluate(point).
   FeaturePoint moved(const FeaturePoint& point, const FeatureJet& jet, const Eigen::Vector2d& ds) const;
-  /// Whether a point (body frame, m) is inside the part.
-  bool contains(const Vec3<double>& x) const { return part_.inside_outside(x, values_) < 0; }
+  /// Whether a point (body frame, m) is inside the part: f = w - 1 is less than -depth.
+  bool contains(const Vec3<double>& x, double depth = 0) const {
+    return part_.inside_outside(x, values_) < -depth;
+  }
   /// Whether the coordinates of a point are within the boundary of its feature.
   bool is_inside(const FeaturePoint& point) const;
 

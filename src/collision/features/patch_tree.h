@@ -49,6 +49,9 @@ struct PairReach {
   double max_gap, max_depth, margin, turn;
 };
 
+/// Whether all derivatives of a patch are finite, its tangents are independent, and its bound is finite.
+bool is_regular(const Patch& patch);
+
 class PatchTree {
  public:
   explicit PatchTree(std::vector<Patch> patches);
