@@ -132,7 +132,7 @@ class ContactFinder {
   const Model* model_;
   std::vector<std::shared_ptr<const CollisionSurface>> surfaces_;  // nullptr for parts that deform locally
   std::shared_ptr<const ContactRules> rules_;                      // of the whole body
-  std::vector<ContactRule> on_planes_;  // index: part * number of planes + plane
+  std::vector<ContactRule> on_planes_;                             // index: part * number of planes + plane
   std::shared_ptr<const std::vector<ObstacleMesh>> obstacles_;
   std::vector<ContactRule> on_obstacles_;  // index: part * number of obstacles + obstacle
   bool has_pairs_;                         // whether parts may touch parts

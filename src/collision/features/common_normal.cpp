@@ -105,8 +105,8 @@ Vec3<double> NormalSearch::start(const Patch& a, const Patch& b) const {
 NormalSearch::System NormalSearch::system(const Place& at) const {
   const Vec3<double>& n = at.normal;
   const Vec3<double> d = at.of_a.x - at.of_b.x;
-  System system{Eigen::Matrix<double, 6, 6>::Zero(), Vec<double, 6>::Zero(), plane_basis(n), tangent_lengths(at.of_a),
-                tangent_lengths(at.of_b)};
+  System system{Eigen::Matrix<double, 6, 6>::Zero(), Vec<double, 6>::Zero(), plane_basis(n),
+                tangent_lengths(at.of_a), tangent_lengths(at.of_b)};
   auto& H = system.hessian;
   auto& residual = system.residual;
   auto add_side = [&](const FeatureJet& jet, const Eigen::Vector2d& length, int first, double sign) {

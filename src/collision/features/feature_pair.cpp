@@ -14,7 +14,7 @@ namespace {
 /// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
 /// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
-constexpr double kLeadsTo = 0.5;
+constexpr double kLeadsTo = 0.8;
 /// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
 constexpr double kOneContactCosine = 0.98;
 /// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
