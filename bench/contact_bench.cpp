@@ -154,7 +154,7 @@ void print(const Cost& c, bench::TableFile& file) {
            c.solve, c.deepest, c.residual, c.fallbacks);
 }
 
-/// What is measured: see the start of this file.
+/// The largest number of bodies, the largest time of a run (s), and the tolerance of contact.
 struct Extent {
   int max_bodies;
   double max_seconds, tolerance;

@@ -1,4 +1,5 @@
-// Function bodies of clusters.h. Clusters::advance() lists the stages of an interval.
+// Function bodies of clusters.h, and those of Simulation that join the counters of clusters.
+// Clusters::advance() lists the stages of an interval.
 #pragma once
 
 #include <pliant/simulate/clusters.h>
@@ -313,6 +314,27 @@ PLIANT_INLINE void Clusters::commit(double end) {
   state.start = end;
   state.step = 0;
   state.h = model.body().contact.interval;
+}
+
+PLIANT_INLINE void Simulation::forget_counters() {
+  step_counters_ = {};
+  for (PartWorkspace<double>& w : work_.parts) w.counters = {};
+  for (RigidWorkspace& w : work_.rigid) w.counters = {};
+}
+
+/// Adds the counters of a cluster, and its velocities without inertia.
+PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
+  step_counters_ += cluster.step_counters_;
+  absorbed_counters_ += cluster.counters();
+  cluster.forget_counters();
+  for (std::size_t i = 0; i < cluster.work_.without_inertia.size(); ++i) {
+    if (cluster.work_.without_inertia[i] == 0) continue;
+    const PartModel &from = cluster.model_.parts()[i],
+                    &to = model_.parts()[static_cast<std::size_t>(cluster.model_.part_numbers()[i])];
+    for (int k = 0; k < 6 + from.n_s; ++k)
+      if (cluster.without_inertia_[static_cast<std::size_t>(from.v0 + k)])
+        without_inertia_[static_cast<std::size_t>(to.v0 + k)] = true;
+  }
 }
 
 PLIANT_INLINE std::vector<std::vector<int>> Clusters::parts() const {

@@ -14,13 +14,11 @@
 #include <pliant/simulate/simulation.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include <pliant/body/advance.h>
-#include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/contact_stepping.h>
 #include <pliant/contact/longest_contact_step.h>
 #include <pliant/local/solid/inverted_element.h>
@@ -28,6 +26,7 @@
 #include <pliant/math/flush_subnormals.h>
 #include <pliant/math/header_only.h>
 #include <pliant/project/project.h>
+#include <pliant/simulate/check_state.h>
 #include <pliant/simulate/choose_integrator.h>
 #include <pliant/simulate/clusters.h>
 #include <pliant/simulate/failure_report.h>
@@ -63,37 +62,6 @@ auto at_time(double t, F&& act) {
   } catch (const InvertedElement& failure) {
     throw NumericalFailure(failure.what(), t);
   }
-}
-
-/// Throws std::invalid_argument if the contact cache of a state contains numbers that are not finite, has a
-/// negative age, does not fit the model or is not sorted by pairs of bodies.
-inline void check_contact_cache(const State& state, const Model& model) {
-  if (state.contact_cache_age < 0)
-    throw std::invalid_argument("the contact cache of this state has a negative age");
-  const ContactSettings& contact = model.body().contact;
-  const std::array<std::size_t, 4> counts{model.parts().size(), model.parts().size(), contact.planes.size(),
-                                          contact.obstacles.size()};
-  for (const CachedContact& cached : state.contact_cache) {
-    bool fits = cached.between[0] >= 0;
-    for (std::size_t i = 0; i < counts.size(); ++i)
-      fits = fits && cached.between[i] >= -1 && cached.between[i] < static_cast<int>(counts[i]);
-    if (!fits) throw std::invalid_argument("a cached contact of this state belongs to another model");
-    if (!cached.x.allFinite() || !cached.force.allFinite())
-      throw std::invalid_argument("a cached contact of this state is not finite");
-  }
-  if (!std::is_sorted(state.contact_cache.begin(), state.contact_cache.end(), ByPair{}))
-    throw std::invalid_argument("the contact cache of this state is not sorted by the pairs of bodies");
-}
-
-/// Throws std::invalid_argument if a StepMemory of a state is out of range.
-inline void check_step_memory(const State& state) {
-  for (const StepMemory& memory : state.step_memory)
-    if (!(memory.h >= 0 && memory.error >= 0 && memory.contact_residual >= 0 &&
-          memory.contact_cache_age >= 0) ||
-        !std::isfinite(memory.h + memory.error + memory.contact_residual))
-      throw std::invalid_argument(
-          "a step length or another number of the clusters of this state is negative or "
-          "not finite");
 }
 
 }  // namespace simulation
@@ -282,27 +250,6 @@ PLIANT_INLINE void Simulation::advance_clusters(double end) {
   } catch (...) {
     reject_step();
     throw;
-  }
-}
-
-PLIANT_INLINE void Simulation::forget_counters() {
-  step_counters_ = {};
-  for (PartWorkspace<double>& w : work_.parts) w.counters = {};
-  for (RigidWorkspace& w : work_.rigid) w.counters = {};
-}
-
-/// Adds the counters of a cluster, and its velocities without inertia.
-PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
-  step_counters_ += cluster.step_counters_;
-  absorbed_counters_ += cluster.counters();
-  cluster.forget_counters();
-  for (std::size_t i = 0; i < cluster.work_.without_inertia.size(); ++i) {
-    if (cluster.work_.without_inertia[i] == 0) continue;
-    const PartModel &from = cluster.model_.parts()[i],
-                    &to = model_.parts()[static_cast<std::size_t>(cluster.model_.part_numbers()[i])];
-    for (int k = 0; k < 6 + from.n_s; ++k)
-      if (cluster.without_inertia_[static_cast<std::size_t>(from.v0 + k)])
-        without_inertia_[static_cast<std::size_t>(to.v0 + k)] = true;
   }
 }
 
@@ -518,11 +465,7 @@ PLIANT_INLINE std::set<std::string> Simulation::velocities_without_inertia() con
 }
 
 PLIANT_INLINE void Simulation::set_state(State state) {
-  if (state.q.size() != model_.n_q() || state.v.size() != model_.n_v() ||
-      static_cast<int>(state.at_limit.size()) != model_.n_limits() ||
-      state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting() ||
-      (!state.step_memory.empty() && state.step_memory.size() != model_.parts().size()))
-    throw std::invalid_argument("this state belongs to another model");
+  simulation::check_sizes(state, model_);
   if (!contact_) state.contact_cache.clear();
   simulation::check_contact_cache(state, model_);
   if (state.contact_cache.empty()) state.contact_cache_age = 0;
