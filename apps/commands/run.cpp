@@ -9,6 +9,7 @@
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/frame_range.h>
 #include <pliant/io/mesh_frames.h>
+#include <pliant/io/run/energy_gate.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/run_files.h>
 
@@ -32,7 +33,8 @@ struct RunCommand {
   ColorOptions colors;
   std::string folder, size, integrator;
   std::optional<double> end, step, tolerance, frame_rate;
-  bool obj = false, png = false, quiet = false, force = false, resume = false, estimate = false;
+  bool obj = false, png = false, quiet = false, force = false, resume = false, estimate = false,
+       strict = false;
   int threads = 0;
   pliant::GlBackend backend = pliant::GlBackend::automatic;
   std::vector<std::string> command_line;
@@ -194,9 +196,10 @@ int run_scene(const RunCommand& command) {
               << pliant::count_text(run.record().steps_done, "step") << ", "
               << pliant::count_text(run.record().states, "state")
               << " recorded; largest error of the energy balance "
-              << pliant::rounded_text(run.record().max_balance_error) << " J (largest kinetic energy "
-              << pliant::rounded_text(run.record().max_kinetic) << " J)" << contact_summary(run) << "\n";
-  return kDone;
+              << pliant::rounded_text(run.record().energies.balance) << " J, "
+              << pliant::rounded_text(100 * run.record().energy_share, 2) << " % of the energy that moved ("
+              << pliant::rounded_text(run.record().energy_moved) << " J)" << contact_summary(run) << "\n";
+  return command.strict && run.record().energy_share > pliant::kReportedEnergyShare ? kBoundExceeded : kDone;
 }
 
 std::vector<std::string> integrator_names() {
@@ -259,6 +262,9 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "--estimate-error", options->estimate,
       "Repeat the run with a tenth of the tolerance, or with half the step, and print the differences; "
       "steps with resting contacts are halved in both cases");
+  command->add_flag("--strict", options->strict,
+                    "End with exit code 6 if the error of the energy balance exceeds 1 % of the energy that "
+                    "moved");
   command->add_flag("--quiet", options->quiet, "Show no progress, notes or summary");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
   command

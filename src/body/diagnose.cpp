@@ -28,7 +28,9 @@ class TermCheck {
   std::string masses() const {
     for (std::size_t i = 0; i < work_.parts.size(); ++i) {
       const PartWorkspace<double>& w = work_.parts[i];
-      if (!w.c.allFinite() || !w.R.allFinite()) return "the prescribed motion" + of_part(i);
+      if (!w.c.allFinite() || !w.R.allFinite())
+        return (model_.parts()[i].motion != nullptr ? "the prescribed motion" : "the rotation matrix") +
+               of_part(i);
       if (model_.parts()[i].q0 < 0) continue;
       if (!w.inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
       if (w.local && !w.local->force.allFinite()) return "the force on the nodes" + of_part(i);

@@ -22,6 +22,7 @@
 #include "scene/reader/obstacle_reader.h"
 #include "scene/reader/part_reader.h"
 #include "scene/reader/point_reader.h"
+#include "scene/reader/scene_warnings.h"
 #include "scene/reader/time_reader.h"
 #include "scene_faults.h"
 
@@ -75,6 +76,7 @@ class SceneReader {
     for (const Reader& r : named("torques")) read_torque(r, points);
     for (const Reader& r : named("tracks")) read_track(r, points);
     read_coloring();
+    if (faults_.errors() == 0) add_warnings(*scene_, root_, faults_);
     return scene;
   }
 

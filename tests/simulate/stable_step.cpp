@@ -160,7 +160,7 @@ TEST_CASE("N19: a spin limits the step to half a radian", "[stable]") {
     message = failure.what();
   }
   INFO(message);
-  CHECK(message.find("the largest stable step here is about") != std::string::npos);
+  CHECK(message.find("the largest stable step at the start is about") != std::string::npos);
 }
 
 /// Adds a hanging chain of n small balls on rods of 1 m, and sets gravity to 1 m/s^2. velocity: initial

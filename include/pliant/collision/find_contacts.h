@@ -43,6 +43,12 @@ class ContactFinder {
   /// obstacles; after these all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
                             const std::vector<bool>* marked = nullptr) const;
+  /// Whether find() finds the contacts of this pair: neither side deforms locally. MeshFinder finds the
+  /// others.
+  bool finds(const Contact& contact) const {
+    return (contact.a.part < 0 || surfaces_[at(contact.a.part)]) &&
+           (contact.b.part < 0 || surfaces_[at(contact.b.part)]);
+  }
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
   /// Returns a contact with a plane at the state and time of the last call of find(): the material point of

@@ -257,11 +257,21 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progres
 }
 
 PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) const {
-  const double h = progress.end - progress.begin;
+  const State& state = progress.step.state;
+  double fastest = -1;  // sizes per second
   std::ostringstream message;
-  message << "parts move so fast past each other that a step of " << h << " s would need more than "
-          << contact_stepping::kMaxMotions
-          << " pieces in which no part passes through another; use a smaller step";
+  for (const PartModel& m : dynamics_.model().parts()) {
+    if (m.q0 < 0) continue;
+    const double speed = state.v.segment<3>(m.v0).norm(),
+                 rate = speed / m.part->size() + state.v.segment<3>(m.v0 + 3).norm();
+    if (rate <= fastest) continue;
+    fastest = rate;
+    message.str("");
+    message << "part '" << m.part->name() << "' moves at " << speed << " m/s and turns at "
+            << state.v.segment<3>(m.v0 + 3).norm() << " rad/s";
+  }
+  message << ", so fast that the step would need more than " << contact_stepping::kMaxMotions
+          << " pieces in which no part passes through another";
   throw NumericalFailure(message.str(), progress.now);
 }
 

@@ -82,8 +82,8 @@ inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std:
 }  // namespace step_doubling
 
 PLIANT_INLINE bool ContactStepping::may_double() const {
-  return few_parts_ && std::none_of(record_.contacts.begin(), record_.contacts.end(),
-                                    [](const Contact& c) { return c.a.at_nodes() || c.b.at_nodes(); });
+  return few_parts_ && std::all_of(record_.contacts.begin(), record_.contacts.end(),
+                                   [&](const Contact& c) { return finder_.finds(c); });
 }
 
 PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step,
@@ -204,7 +204,7 @@ PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t
   double gap = 0;
   for (std::size_t k = first; k < record_.contacts.size(); ++k) {
     const Contact& contact = record_.contacts[k];
-    if (contact.a.at_nodes() || contact.b.at_nodes()) continue;
+    if (!finder_.finds(contact)) continue;
     if (!(record_.impulses[k].dot(contact.normal) > 0) || contact.rebound > 0) continue;
     const double max_gap = step_doubling::kMaxLeftGap * resting_.tight_gap(contact);
     if (k == first || key_of(contact) != last) gap = finder_.min_gap(state, t, contact, max_gap);

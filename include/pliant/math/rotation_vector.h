@@ -32,25 +32,34 @@ T angle_over_sine(const T& cosine, const T& sine2) {
 inline constexpr double kHalfTurnCosine = -1 + 1e-12;
 inline constexpr double kHalfTurnOffset = 1e-5;  // rad
 
-/// Returns the rotation vector (rad) of a rotation matrix Q. For a half turn the result has an error of
-/// kHalfTurnOffset.
+/// Returns cos theta of a rotation matrix.
 template <class T>
-Vec3<T> rotation_vector(const Mat3<T>& Q) {
-  auto cosine = [](const Mat3<T>& R) { return T((R(0, 0) + R(1, 1) + R(2, 2) - T(1.0)) * T(0.5)); };
-  if (plain(cosine(Q)) <= kHalfTurnCosine) {
-    int k = 0;  // the coordinate axis that is nearest to the axis of the rotation
-    for (int i = 1; i < 3; ++i)
-      if (plain(Q(i, i)) > plain(Q(k, k))) k = i;
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    const T c(std::cos(kHalfTurnOffset)), s(std::sin(kHalfTurnOffset));
-    Mat3<T> off = Q;
-    off.col(a) = Q.col(a) * c + Q.col(b) * s;
-    off.col(b) = Q.col(b) * c - Q.col(a) * s;
-    return rotation_vector(off);
-  }
+T rotation_cosine(const Mat3<T>& Q) {
+  return (Q(0, 0) + Q(1, 1) + Q(2, 2) - T(1.0)) * T(0.5);
+}
+
+/// Returns a half turn Q rotated by kHalfTurnOffset about the coordinate axis that is nearest to its axis.
+template <class T>
+Mat3<T> off_half_turn(const Mat3<T>& Q) {
+  int k = 0;  // the nearest coordinate axis
+  for (int i = 1; i < 3; ++i)
+    if (plain(Q(i, i)) > plain(Q(k, k))) k = i;
+  const int a = (k + 1) % 3, b = (k + 2) % 3;
+  const T c(std::cos(kHalfTurnOffset)), s(std::sin(kHalfTurnOffset));
+  Mat3<T> off = Q;
+  off.col(a) = Q.col(a) * c + Q.col(b) * s;
+  off.col(b) = Q.col(b) * c - Q.col(a) * s;
+  return off;
+}
+
+/// Returns the rotation vector (rad) of a rotation matrix. For a half turn the result has an error of
+/// kHalfTurnOffset. For a matrix that is not a rotation the result has no meaning; it may be NaN.
+template <class T>
+Vec3<T> rotation_vector(const Mat3<T>& rotation) {
+  const Mat3<T> Q = plain(rotation_cosine(rotation)) <= kHalfTurnCosine ? off_half_turn(rotation) : rotation;
   const Vec3<T> v(T(0.5) * (Q(2, 1) - Q(1, 2)), T(0.5) * (Q(0, 2) - Q(2, 0)),
                   T(0.5) * (Q(1, 0) - Q(0, 1)));  // its length is sin theta
-  return v * angle_over_sine(cosine(Q), T(v.dot(v)));
+  return v * angle_over_sine(rotation_cosine(Q), T(v.dot(v)));
 }
 
 }  // namespace pliant

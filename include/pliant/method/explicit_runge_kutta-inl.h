@@ -84,9 +84,9 @@ PLIANT_INLINE bool ExplicitRungeKutta::end_rates_valid(const Dynamics& dynamics,
   auto gains = [&](double step) {
     return dynamics.model().body().stabilization.gains(step, dynamics.joint_policy().step_consistent);
   };
-  return last_t_ == t && last_.q.size() == state.q.size() && gains(last_.h) == gains(state.h) &&
-         last_.q == state.q && last_.v == state.v && last_.at_limit == state.at_limit &&
-         last_.joints == state.joints && same_sleepers(last_.at_rest, state.at_rest);
+  return last_t_ == t && gains(last_.h) == gains(state.h) && last_.q == state.q && last_.v == state.v &&
+         last_.at_limit == state.at_limit && last_.joints == state.joints &&
+         same_sleepers(last_.at_rest, state.at_rest);
 }
 
 PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
@@ -95,8 +95,8 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
   const ButcherTableau& tableau = *tableau_;
   const double h = state.h, t = state.time();
   const int n = tableau.stages;
-  if (q_rates_.rows() != state.q.size()) {
-    last_.q.resize(0);
+  if (q_rates_.rows() != state.q.size() || q_rates_.cols() == 0) {
+    last_t_ = kNoTime;
     const int additional = tableau.extension == nullptr ? 0 : tableau.extension->stages;
     q_rates_.resize(state.q.size(), n + 1 + additional);
     v_rates_.resize(state.v.size(), n + 1 + additional);
@@ -162,7 +162,7 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics
   StepContext context(dynamics, modes, extension_work_, counters);
   const int n = tableau_->stages, all = n + 1 + extension.stages;
   if (!end_rates_valid(dynamics, t + h, high)) {
-    last_.q.resize(0);
+    last_t_ = kNoTime;
     q_ = high.q;
     v_ = high.v;
     evaluate_stage(context, t + h, n, RankRule::decide);

@@ -5,6 +5,7 @@
 // integrated exactly.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <pliant/method/butcher_tableau.h>
@@ -41,6 +42,8 @@ class ExplicitRungeKutta : public Integrator {
   /// Returns the error of the step, in tolerances. v: the velocities at its start.
   double estimate_error(double h, const VecX<double>& v);
 
+  static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+
   const ButcherTableau* tableau_;
   FreeStages free_;
   // Kept between steps, so that a step allocates no memory. The matrices have one column for each stage, one
@@ -50,7 +53,7 @@ class ExplicitRungeKutta : public Integrator {
   // State and time of the rates at the end of the last step, if its error estimate has evaluated them
   // (ButcherTableau::rates_at_end). These rates are then the first stage of the next step.
   State last_;
-  double last_t_ = 0;
+  double last_t_ = kNoTime;           ///< time of the rates in the last column, s; kNoTime: there are none
   Workspace<double> extension_work_;  ///< evaluations of the dense output
 };
 

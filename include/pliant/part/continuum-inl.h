@@ -43,9 +43,9 @@ void throw_if_inverted(const Law&, const Mat3<Pack>& F) {
   if constexpr (!std::is_same_v<Law, SheetStrain>)
     if (!(min_lane(determinant(F, cofactors(F))) > 0))
       throw InvertedElement(
-          "its global deformation turns some of its elastic material inside out; use a smaller step, a "
-          "stiffer "
-          "material or limits (min, max) of its parameters");
+          "its global deformation turns some of its elastic material inside out; choose a stiffer material "
+          "or "
+          "limits (min, max) of its parameters");
 }
 
 /// Returns the values of all parameters at q_s, with zero rates.

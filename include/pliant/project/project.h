@@ -64,4 +64,8 @@ void project_limits(StepContext& step);
 /// not finite.
 void project_joints(StepContext& step);
 
+/// Throws UnsatisfiableModel if a joint is open, and other joints contradict the equation that closes it.
+/// step.work: an evaluation of the accelerations at the state. Rigid islands are skipped.
+void fail_on_open_conflict(StepContext& step);
+
 }  // namespace pliant

@@ -60,9 +60,12 @@ inline void check_condition(const PartModel& m, const LocalWorkspace& local, dou
   if (condition <= kMaxCondition) return;
   std::ostringstream message;
   message << "the motion of the nodes of part '" << m.part->name()
-          << "' no longer determines its frame and global parameters (condition number " << condition
-          << ", at most " << kMaxCondition << "); "
-          << (m.n_s > 0 ? "freeze some of the parameters"
+          << "' no longer determines its frame and global parameters (condition number ";
+  if (std::isfinite(condition))
+    message << condition << ", at most " << kMaxCondition << "); ";
+  else
+    message << "not finite); ";
+  message << (m.n_s > 0 ? "freeze some of the parameters"
                         : "the nodes are too close to a line, or farther from the shape than its size");
   throw NumericalFailure(message.str(), t);
 }
@@ -70,13 +73,9 @@ inline void check_condition(const PartModel& m, const LocalWorkspace& local, dou
 /// Throws the failure of a part whose frame does not converge.
 [[noreturn]] inline void fail_to_follow(const PartModel& m, const StepContext& step) {
   std::ostringstream message;
-  if (step.state.h > 0)
-    message << "a step of " << step.state.h << " s is too long: after it";
-  else
-    message << "at time 0";
-  message << " the nodes of part '" << m.part->name()
-          << "' are too far from the shape of its parameters to determine its frame; "
-          << (step.state.h > 0 ? "use a smaller step" : "choose smaller displacements");
+  message << "the nodes of part '" << m.part->name()
+          << "' are too far from the shape of its parameters to determine its frame"
+          << (step.state.h > 0 ? "" : " at time 0; choose smaller displacements");
   throw NumericalFailure(message.str(), step.t);
 }
 

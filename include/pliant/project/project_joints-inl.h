@@ -180,8 +180,8 @@ inline bool close_joints(const Dynamics& dynamics, const Island& island, bool an
 
 /// Throws UnsatisfiableModel for a joint that should have closed by now and cannot, because its rows depend
 /// on rows of other joints that contradict them. step.work: the last evaluation of the step that ends at
-/// step.t.
-inline void fail_on_unclosable_joint(StepContext& step, const Island& island) {
+/// step.t. patience: time after which a joint should have closed, in units of 1 / beta.
+inline void fail_on_unclosable_joint(StepContext& step, const Island& island, double patience = kPatience) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;
   const double beta = work.joints.gains.beta;
@@ -191,7 +191,7 @@ inline void fail_on_unclosable_joint(StepContext& step, const Island& island) {
     const JointModel& joint = model.joints()[at(j)];
     const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
     if (!(gap > kStuckGap * joint.length) ||
-        !(beta * (step.t - std::max(0.0, joint.joint->on())) > kPatience))
+        !(beta * (step.t - std::max(0.0, joint.joint->on())) > patience))
       return;
     const double requested = wanted(model, work.joints, j).norm();
     auto disagrees = [&](int k) {
@@ -314,6 +314,12 @@ PLIANT_INLINE void project_limits(StepContext& step) {
     step.dynamics.evaluate_masses(state.q, state.v, projection::parts_of(group), step.work);
     projection::project_group(step, group, false, scratch);
   });
+}
+
+PLIANT_INLINE void fail_on_open_conflict(StepContext& step) {
+  for (const Island& island : step.model().islands())
+    if (projection::rigid_workspace(island, step.work) == nullptr)
+      projection::fail_on_unclosable_joint(step, island, 0);
 }
 
 }  // namespace pliant

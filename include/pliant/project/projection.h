@@ -157,12 +157,12 @@ class Projection {
     }
     if (initial_gap_ <= kMaxGap) throw *failure;
     std::ostringstream message;
-    message << "a step of " << state_.h << " s is too long for the motion: it opens "
+    message << "the step is too long for the motion: it opens "
             << model_.joints()[at(widest_joint_)].joint->type() << " '"
             << model_.joints()[at(widest_joint_)].joint->name() << "' by " << initial_gap_
-            << " times the size of its smaller part; use a smaller step";
+            << " times the size of its smaller part";
     if (model_.joints()[at(widest_joint_)].driven)
-      message << ", or check that the prescribed path of its end does not jump";
+      message << "; check that the prescribed path of its end does not jump";
     throw NumericalFailure(message.str(), step_.t);
   }
 
@@ -235,6 +235,8 @@ class Projection {
               << model_.joints()[at(j)].joint->name() << "'";
     };
     if (dependent != open && model_.joints()[at(dependent)].joint->one_sided()) name(dependent);
+    for (const int j : island_->strings)
+      if (j != open && j != dependent && model_.joints()[at(open)].joint->one_sided() && is_taut(j)) name(j);
     for (const int j : island_->joints) {
       if (j == open || (j != dependent && !depends(model_.joints()[at(dependent)], model_.joints()[at(j)])))
         continue;
@@ -249,6 +251,12 @@ class Projection {
 
  private:
   enum class Rows { coordinates, velocities };
+
+  /// Whether a string acts and is not slack.
+  bool is_taut(int j) const {
+    const JointModel& joint = model_.joints()[at(j)];
+    return state_.joints[at(j)] == JointMode::closed && work_.joints.C[joint.row] <= kTaut * joint.length;
+  }
 
   /// Iterates until the joints are closed to rounding. Returns whether a limit, or a string that was slack,
   /// pushed.
@@ -386,19 +394,26 @@ class Projection {
     if (kind == Rows::velocities) vectors_.start = x;
   }
 
-  /// Returns the failure of a closed joint with a gap above rounding, with the names of the joints that hold
-  /// it open; none if all are closed.
-  std::optional<UnsatisfiableModel> open_joint() const {
+  /// Returns the failure of a closed joint with a gap above rounding, or of a string that is too long, with
+  /// the names of the joints that hold it open; none if there is no such joint.
+  std::optional<UnsatisfiableModel> open_joint() {
+    if (!evaluated_ && !island_->strings.empty())
+      step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
     int open = -1;
     double widest = 0;
-    for (const int j : island_->joints) {
-      const JointModel& joint = model_.joints()[at(j)];
-      const double gap = work_.joints.C.segment(joint.row, joint.rows).norm();
-      if (state_.joints[at(j)] != JointMode::closed ||
-          !(gap > kOpenGap * row_rounding(joint, Rows::coordinates)) || gap <= widest)
-        continue;
+    auto consider = [&](int j, double gap, double allowed) {
+      if (state_.joints[at(j)] != JointMode::closed || !(gap > allowed) || gap <= widest) return;
       open = j;
       widest = gap;
+    };
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      consider(j, work_.joints.C.segment(joint.row, joint.rows).norm(),
+               kOpenGap * row_rounding(joint, Rows::coordinates));
+    }
+    for (const int j : island_->strings) {
+      const JointModel& joint = model_.joints()[at(j)];
+      consider(j, -work_.joints.C[joint.row], kStuckGap * joint.length);
     }
     if (open < 0) return std::nullopt;
     return contradiction(open, widest, open);

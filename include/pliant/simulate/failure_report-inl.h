@@ -4,7 +4,9 @@
 #include <pliant/simulate/failure_report.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
@@ -13,6 +15,9 @@ namespace pliant::failure_report {
 
 /// A part has burst if a node is displaced by more than this multiple of the size of the part.
 inline constexpr double kBurst = 2;
+/// The square of the norm of a quaternion may differ from 1 by this. Coordinates and velocities above
+/// kLargest are not finite for the energies, which contain their squares.
+inline constexpr double kUnit = 1e-6, kLargest = 1e150;
 
 PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
   std::ostringstream message;
@@ -41,15 +46,87 @@ inline std::string gap_not_finite(const Model& model, const Workspace<double>& w
   return {};
 }
 
-PLIANT_INLINE std::string not_finite(const Model& model, const State& state, const Workspace<double>& work) {
+/// Returns the name of the part whose quaternion is not a rotation; empty if there is none.
+inline std::string part_without_orientation(const Model& model, const State& state) {
+  for (const PartModel& m : model.parts())
+    if (m.q0 >= 0 && !(std::abs(state.q.segment<4>(m.q0 + 3).squaredNorm() - 1) <= kUnit))
+      return m.part->name();
+  return {};
+}
+
+PLIANT_INLINE std::string fault_of(const Model& model, const State& state, const Workspace<double>& work) {
+  const char* not_finite = " is not a finite number";
   const std::string gap = gap_not_finite(model, work);
-  if (!gap.empty()) return gap;
-  if (all_finite(state.q) && all_finite(state.v) && all_finite(state.work)) return {};
-  for (Eigen::Index i = 0; i < state.v.size(); ++i)
-    if (!std::isfinite(state.v[i])) return model.velocity_name(static_cast<int>(i));
-  for (Eigen::Index i = 0; i < state.q.size(); ++i)
-    if (!std::isfinite(state.q[i])) return model.coordinate_name(static_cast<int>(i));
-  return "the work of the ledger";
+  if (!gap.empty()) return gap + not_finite;
+  if (!(std::isfinite(state.q.squaredNorm()) && std::isfinite(state.v.squaredNorm()) &&
+        all_finite(state.work))) {
+    for (Eigen::Index i = 0; i < state.v.size(); ++i)
+      if (!(std::abs(state.v[i]) <= kLargest)) return model.velocity_name(static_cast<int>(i)) + not_finite;
+    for (Eigen::Index i = 0; i < state.q.size(); ++i)
+      if (!(std::abs(state.q[i]) <= kLargest)) return model.coordinate_name(static_cast<int>(i)) + not_finite;
+    return std::string("the work of the ledger") + not_finite;
+  }
+  const std::string part = part_without_orientation(model, state);
+  if (part.empty()) return {};
+  return "the quaternion of part '" + part + "' is no longer a rotation";
+}
+
+/// A change of energy, J, and a text that names the energy.
+struct EnergyChange {
+  double change = 0;
+  std::string of;
+
+  void keep_larger(double other, const std::string& name) {
+    if (!of.empty() && std::abs(other) <= std::abs(change)) return;
+    change = std::isfinite(other) ? other : std::numeric_limits<double>::infinity();
+    of = name;
+  }
+  std::string text() const {
+    std::ostringstream message;
+    message.precision(4);
+    message << of << " by ";
+    if (std::isfinite(change))
+      message << change << " J";
+    else
+      message << "more than any number";
+    return message.str();
+  }
+};
+
+PLIANT_INLINE std::string largest_energy_change(const Dynamics& dynamics, const State& before,
+                                                const State& after) {
+  const Model& model = dynamics.model();
+  Workspace<double> work;
+  EnergyChange energy, done;
+  for (int k = 0; k < kWorks; ++k)
+    done.keep_larger(after.work[k] - before.work[k],
+                     std::string("the work of ") + kWorkNames[static_cast<std::size_t>(k)]);
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
+    const PartModel& m = model.parts()[static_cast<std::size_t>(i)];
+    if (m.q0 < 0) continue;
+    auto energies = [&](const State& state) {
+      const VecX<double> at_rest = VecX<double>::Zero(state.v.size());
+      const double potential = dynamics.energy(state.time(), state.q, at_rest, {i}, work);
+      return std::make_pair(potential,
+                            dynamics.energy(state.time(), state.q, state.v, {i}, work) - potential);
+    };
+    const auto [potential, kinetic] = energies(before);
+    const auto [potential_after, kinetic_after] = energies(after);
+    const std::string of_part = " energy of part '" + m.part->name() + "'";
+    energy.keep_larger(potential_after - potential, "the potential" + of_part);
+    energy.keep_larger(kinetic_after - kinetic, "the kinetic" + of_part);
+  }
+  if (energy.of.empty()) return "no part moves";
+  std::ostringstream message;
+  message << "since t = " << before.time() << " s the largest changes are those of " << energy.text();
+  if (done.change != 0) message << ", and of " << done.text();
+  return message.str();
+}
+
+PLIANT_INLINE std::string place(double t, double h) {
+  std::ostringstream message;
+  message << "at t = " << t << " s, in a step of " << h << " s: ";
+  return message.str();
 }
 
 PLIANT_INLINE std::string cause(const Dynamics& dynamics, const State& before) {
@@ -57,9 +134,7 @@ PLIANT_INLINE std::string cause(const Dynamics& dynamics, const State& before) {
   std::string term = dynamics.diagnose(before.time(), before.q, before.v, before, scratch);
   if (term.empty()) term = dynamics.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
   if (!term.empty()) return "the first term that is not finite is " + term;
-  std::ostringstream message;
-  message << "the motion has grown without bound; use a smaller step than " << before.h << " s";
-  return message.str();
+  return "the motion has grown without bound";
 }
 
 }  // namespace pliant::failure_report

@@ -10,11 +10,19 @@ namespace pliant::failure_report {
 /// Returns a text that names the parts that have burst at a state; empty if there is none. A part has burst
 /// if a node is displaced by more than twice the size of the part.
 std::string burst_parts(const Model& model, const State& state);
-/// Returns the name of the coordinate, velocity, gap or work that is not finite after a step; empty if all
-/// are finite. work: the last evaluation of the step.
-std::string not_finite(const Model& model, const State& state, const Workspace<double>& work);
+/// Returns the fault of a state after a step: "X is not a finite number", where X is a coordinate, velocity,
+/// gap or work, or the orientation of a part without direction; empty for a valid state. work: the last
+/// evaluation of the step.
+std::string fault_of(const Model& model, const State& state, const Workspace<double>& work);
 /// Returns a text that names the first term of the equations of motion that is not finite at the start or at
-/// the end time of the step from a state. If all terms are finite, returns the advice to use a smaller step.
+/// the end time of the step from a state. If all terms are finite, says that the motion has grown without
+/// bound.
 std::string cause(const Dynamics& dynamics, const State& before);
+
+/// Returns a text that names the part and the kind of its energy, and the kind of work, that differ most
+/// between two states of a model. The potential energy of a part contains that of the springs at the part.
+std::string largest_energy_change(const Dynamics& dynamics, const State& before, const State& after);
+/// Returns "at t = T s, in a step of H s: ".
+std::string place(double t, double h);
 
 }  // namespace pliant::failure_report

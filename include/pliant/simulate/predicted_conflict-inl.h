@@ -19,6 +19,14 @@ inline constexpr double kMaxPrediction = 0.01, kPredictionGrowth = 10;
 
 PLIANT_INLINE void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h) {
   if (dynamics.model().joints().empty()) return;
+  {
+    Workspace<double> work;
+    StepCounters counters;
+    State open = state;
+    dynamics.accelerations(state.time(), state.q, state.v, state, work);
+    StepContext step(dynamics, open, work, counters, state.time(), h);
+    fail_on_open_conflict(step);
+  }
   const double rate = dynamics.model().body().stabilization.rate,
                longest = rate > 0 ? predicted_conflict::kMaxPrediction / rate : h;
   for (double ahead = h; ahead <= std::max(longest, predicted_conflict::kPredictionGrowth * h);

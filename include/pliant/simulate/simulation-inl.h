@@ -8,7 +8,7 @@
 //                sleep: around stage 3
 //   5 accept     accept the step, or reject and repeat it shorter       simulate/step_length.h
 //   6 paths      apply impulses at kinks of prescribed paths            project/follow_paths-inl.h
-//   7 check      reject states that are not finite                      simulate/failure_report-inl.h
+//   7 check      reject states that are not valid                       simulate/failure_report-inl.h
 #pragma once
 
 #include <pliant/simulate/simulation.h>
@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include <pliant/body/advance.h>
 #include <pliant/contact/contact_stepping.h>
@@ -99,6 +100,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
       set_method(make_integrator(choice_.integrator));
     }
     start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
+    first_ = state_;
   });
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
   if (!scale_ || !model_.forms_clusters()) return;
@@ -163,6 +165,22 @@ PLIANT_INLINE void Simulation::begin_step() {
   switching_.begin_step();
 }
 
+/// Returns the failure of a step of h seconds with the place of the step, the parts that have burst before it
+/// and, if the step is fixed and longer, the largest stable step at the first state. t: time of the failure,
+/// s.
+PLIANT_INLINE NumericalFailure Simulation::completed(const std::string& what, double t, double h) {
+  std::ostringstream message;
+  message << failure_report::place(state_.time(), h) << failure_report::burst_parts(model_, state_) << what;
+  if (!scale_) {
+    std::swap(state_, first_);
+    const double stable = largest_stable_step(*this);
+    std::swap(state_, first_);
+    message.precision(3);
+    if (stable < h) message << "; the largest stable step at the start is about " << stable << " s";
+  }
+  return {message.str(), t};
+}
+
 /// Calls step() for a step of h seconds. If step() throws, restores the state before the step, completes the
 /// message of the failure and throws it again.
 template <class Advance>
@@ -172,18 +190,19 @@ void Simulation::with_rollback(double h, Advance&& step) {
   } catch (const UnsatisfiableModel& failure) {
     const bool shorter = !scale_ && shorter_steps_pass(h);
     reject_step();
-    if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
+    const std::string place = failure_report::place(state_.time(), h);
+    if (!shorter) throw UnsatisfiableModel(place + failure.what(), state_.time());
     std::ostringstream message;
-    message << "a step of " << h << " s is too long for the motion: " << failure.what() << "; steps of "
-            << h / simulation::kShorterSteps << " s do not fail in this way";
+    message << place << failure.what() << "; the step is too long: steps of " << h / simulation::kShorterSteps
+            << " s do not fail in this way";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     reject_step();
-    throw NumericalFailure(failure_report::burst_parts(model_, state_) + failure.what(), state_.time());
+    throw completed(failure.what(), state_.time(), h);
   } catch (const NumericalFailure& failure) {
     reject_step();
     fail_on_predicted_conflict(dynamics_, state_, h);
-    throw NumericalFailure(failure_report::burst_parts(model_, state_) + failure.what(), failure.time);
+    throw completed(failure.what(), failure.time, h);
   } catch (...) {
     reject_step();
     throw;
@@ -318,10 +337,11 @@ PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before
 /// otherwise a NumericalFailure, because the error exceeds the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   integrate();
+  const VecX<double> none = VecX<double>::Zero(state_.q.size());
   std::ostringstream message;
-  message << "the error of a step from t = " << last_good_.time() << " s exceeds the tolerance of "
-          << scale_->tolerance()
-          << " for the shortest possible step; expected a larger tolerance, or motion without jumps";
+  message << "the error of the shortest possible step exceeds the tolerance of " << scale_->tolerance()
+          << "; " << scale_->worst(none, state_.v - last_good_.v, state_.v)
+          << " changes most in it: expected a larger tolerance, or motion without jumps";
   throw NumericalFailure(message.str(), last_good_.time());
 }
 
@@ -409,11 +429,11 @@ PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   switching_.follow_paths(after, kink, tolerance);
 }
 
-/// Stage 7: counts the step, and rejects a state that is not finite.
+/// Stage 7: counts the step, and rejects a state that is not valid.
 PLIANT_INLINE void Simulation::end_step() {
   ++step_counters_.steps;
-  const std::string where = failure_report::not_finite(model_, state_, work_);
-  if (!where.empty()) fail_not_finite(where);
+  const std::string fault = failure_report::fault_of(model_, state_, work_);
+  if (!fault.empty()) fail_by(fault);
   if (contact_) record_contact_errors();
   record_without_inertia();
 }
@@ -427,19 +447,12 @@ PLIANT_INLINE void Simulation::record_contact_errors() {
 }
 
 /// Restores the state before the step and throws NumericalFailure, or UnsatisfiableModel if a conflict of
-/// joints is predicted. where: name of the number that is not finite.
-PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
-  const State before = last_good_;
-  std::ostringstream message;
-  message << failure_report::burst_parts(model_, before) << where
-          << " is not a finite number after the step from t = " << before.time() << " s; "
-          << failure_report::cause(dynamics_, before);
+/// joints is predicted. fault: what is wrong with the state after the step, see failure_report::fault_of().
+PLIANT_INLINE void Simulation::fail_by(const std::string& fault) {
+  const std::string cause = failure_report::cause(dynamics_, last_good_);
   reject_step();
-  const double stable = largest_stable_step(*this);
-  fail_on_predicted_conflict(dynamics_, before, before.h);
-  message.precision(3);
-  if (std::isfinite(stable)) message << "; the largest stable step here is about " << stable << " s";
-  throw NumericalFailure(message.str(), before.time());
+  fail_on_predicted_conflict(dynamics_, state_, state_.h);
+  throw completed(fault + " after the step; " + cause, state_.time(), state_.h);
 }
 
 /// Records the velocities without inertia in the last evaluation of the step.
@@ -474,6 +487,7 @@ PLIANT_INLINE void Simulation::set_state(State state) {
   if (clusters_ && state.step_memory.empty())
     state.step_memory.assign(model_.parts().size(), {0, 0, state.contact_residual, state.contact_cache_age});
   state_ = std::move(state);
+  first_ = state_;
   switching_.forget_after(time() + simulation::kNear * state_.h);
   if (contact_) contact_->begin_step();  // no contacts yet
 }

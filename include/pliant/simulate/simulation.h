@@ -105,7 +105,8 @@ class Simulation {
   void begin_step();
   void reject_step();
   void end_step();
-  [[noreturn]] void fail_not_finite(const std::string& where);
+  [[noreturn]] void fail_by(const std::string& fault);
+  NumericalFailure completed(const std::string& what, double t, double h);
   StepContext context();
   void switch_joints(double t, double tolerance);
   void follow_paths(double kink, double tolerance);
@@ -122,6 +123,7 @@ class Simulation {
   std::unique_ptr<ContactStepping> contact_;  ///< nullptr if contact is not active
   std::unique_ptr<Clusters> clusters_;        ///< nullptr if all parts step together
   State state_, last_good_, attempt_start_;
+  State first_;  ///< the state at the start, or that of the last set_state()
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;

@@ -10,7 +10,9 @@
 #include <pliant/io/format/ply.h>
 #include <pliant/io/format/whole_file.h>
 #include <pliant/io/run/contact_notes.h>
+#include <pliant/io/run/energy_gate.h>
 #include <pliant/io/run/joint_notes.h>
+#include <pliant/io/run/remedy.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/run/skipped.h>
 #include <pliant/io/trajectory.h>
@@ -23,6 +25,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kFlushEvery{250};
 constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
+/// The search for a remedy takes at most this multiple of the wall time of the failed run. It takes at least
+/// RunOptions::remedy_seconds, and at most kMaxRemedyShare times that.
+constexpr double kRemedyShare = 3, kMaxRemedyShare = 10;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -83,6 +88,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const Clock::time_point start = Clock::now();
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_.threads);
+  energies_.emplace(simulation_->model());
   const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
   folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
@@ -226,6 +232,7 @@ void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
 void Run::resume_recording() {
   record_ = read_run_record(*folder_ / kRunFile);
   check_resumable();
+  energies_->set_range(record_.energies);
   if (scene_->tolerance == 0)
     schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
   if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
@@ -289,17 +296,60 @@ void Run::note_turns() {
 /// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
 /// write_record() must have updated the counters.
 void Run::note_violations() {
-  std::vector<std::string>& notes = record_.notes;
-  notes.erase(std::remove_if(notes.begin(), notes.end(), is_violation_note), notes.end());
-  for (const std::string& text : violation_notes(record_.step_counters, scene_->body.contact)) note(text);
+  replace_notes(is_violation_note, violation_notes(record_.step_counters, scene_->body.contact));
+}
+
+/// Adds a note on the largest error of the energy balance. It replaces that of earlier sessions.
+void Run::note_energy_balance() {
+  const std::string text = energy_note(*simulation_, *energies_);
+  replace_notes(is_energy_note, text.empty() ? std::vector<std::string>() : std::vector<std::string>{text});
+}
+
+/// Replaces the notes for which is_old() is true by others.
+void Run::replace_notes(bool (*is_old)(const std::string&), const std::vector<std::string>& notes) {
+  record_.notes.erase(std::remove_if(record_.notes.begin(), record_.notes.end(), is_old),
+                      record_.notes.end());
+  for (const std::string& text : notes) note(text);
+}
+
+/// Returns the ledger of the present state. Throws NumericalFailure if its energies are not valid.
+Ledger Run::checked_ledger() {
+  const Ledger ledger = simulation_->ledger();
+  const EnergyRange before = energies_->range();
+  energies_->add(ledger);
+  try {
+    require_energy_balance(*simulation_, *energies_, last_recorded_);
+  } catch (...) {
+    energies_->set_range(before);
+    throw;
+  }
+  return ledger;
+}
+
+/// Records the last good state of a simulation that has failed, so that the motion before the failure can be
+/// examined. A state with energies that are not valid is not recorded.
+void Run::record_last_valid_state() {
+  try {
+    record_state();
+  } catch (const NumericalFailure&) {
+  }
+}
+
+/// Returns advice for a run that has failed after `elapsed` seconds of wall time.
+std::string Run::remedy(double elapsed) const {
+  const double seconds =
+      std::clamp(kRemedyShare * elapsed, options_.remedy_seconds, kMaxRemedyShare * options_.remedy_seconds);
+  return find_remedy(*scene_, {scene_->integrator, schedule_.step(), options_.threads}, seconds,
+                     options_.stop);
 }
 
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
+  const Ledger ledger = checked_ledger();
+  last_recorded_ = simulation_->state();
   recorded_time_ = simulation_->time();
   writer_->append(simulation_->state());
   if (contacts_) contacts_->append(*simulation_);
-  const Ledger ledger = simulation_->ledger();
   const Gaps gaps = widest_gaps(*simulation_);
   record_.max_gap = std::max(record_.max_gap, gaps.closed);
   record_.open_gap = gaps.open;
@@ -310,9 +360,10 @@ void Run::record_state() {
   note_redundancy();
   note_engagements();
   note_turns();
-  record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
-  record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
+  record_.energies = energies_->range();
+  record_.energy_moved = energies_->moved();
+  record_.energy_share = energies_->share();
 }
 
 /// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
@@ -411,19 +462,25 @@ void Run::step_to_end() {
   progress_->end();
 }
 
+/// Writes the recording and the tables of a run that has failed after `elapsed` seconds of wall time.
+void Run::end_failed(double elapsed) {
+  record_last_valid_state();
+  record_.add_seconds("simulate", elapsed);
+  save(true);
+  note_violations();
+  write_tables();
+}
+
 bool Run::simulate() {
   const Clock::time_point start = Clock::now();
   try {
     try {
       step_to_end();
+    } catch (const NumericalFailure& failure) {
+      end_failed(seconds_since(start));
+      throw NumericalFailure(failure.what() + ("; " + remedy(seconds_since(start))), failure.time);
     } catch (const StepFailure&) {
-      // The simulation is at the last good state. It is recorded, so that the motion before the failure can
-      // be examined.
-      record_state();
-      record_.add_seconds("simulate", seconds_since(start));
-      save(true);
-      note_violations();
-      write_tables();
+      end_failed(seconds_since(start));
       throw;
     }
     record_.add_seconds("simulate", seconds_since(start));
@@ -435,6 +492,7 @@ bool Run::simulate() {
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
            " s long, and --estimate-error measures their error");
     note_violations();
+    note_energy_balance();
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });

@@ -21,8 +21,11 @@ Vec3<double> read_direction(const JsonValue& value, SceneFaults& faults) {
 
 Eigen::Quaterniond read_orientation(const Reader& r, SceneFaults& faults) {
   if (!r.complete()) return Eigen::Quaterniond::Identity();
-  if (r.name() == "by_axis")
+  if (r.name() == "by_axis") {
+    if (std::abs(r.number("angle")) > 2 * kPi)
+      faults.warn(r.at("angle"), "this is more than a full turn; angles are in radians");
     return Eigen::Quaterniond(Eigen::AngleAxisd(r.number("angle"), read_direction(r.at("axis"), faults)));
+  }
   const JsonValue& value = r.at("quaternion");
   const std::vector<double> q = r.numbers("quaternion");
   const Eigen::Vector4d wxyz(q[0], q[1], q[2], q[3]);

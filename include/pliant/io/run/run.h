@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include <pliant/io/run/run_folder.h>
 #include <pliant/io/run/run_record.h>
 #include <pliant/scene/scene.h>
+#include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/stable_step.h>
 
 namespace pliant {
@@ -28,6 +30,7 @@ struct RunOptions {
   std::string scene_file;            ///< path of the scene, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
   std::string graphics;              ///< graphics library, for run.json; empty without pictures
+  double remedy_seconds = 2;         ///< wall time of the trials after a failure, see find_remedy(), s
   std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
 };
 
@@ -81,6 +84,10 @@ class Run {
   void note_setup(const StableStep& stable);
   void list_files();
   void record_state();
+  Ledger checked_ledger();
+  void record_last_valid_state();
+  void end_failed(double elapsed);
+  std::string remedy(double elapsed) const;
   bool at_end() const;
   bool step_once();
   void step_to_end();
@@ -96,6 +103,8 @@ class Run {
   void note_engagements();
   void note_turns();
   void note_violations();
+  void note_energy_balance();
+  void replace_notes(bool (*is_old)(const std::string&), const std::vector<std::string>& notes);
 
   Scene* scene_;
   RunOptions options_;
@@ -106,6 +115,8 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene requests them
   RunRecord record_;
+  std::optional<EnergyMonitor> energies_;  // set by the constructor
+  State last_recorded_;
   double recorded_time_ = -1;  // time of the last recorded state, s
   // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
   // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.

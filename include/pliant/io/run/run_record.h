@@ -12,6 +12,7 @@
 
 #include <pliant/io/run/build_info.h>
 #include <pliant/io/run/estimate_error.h>
+#include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/simulation.h>
 
 namespace pliant {
@@ -53,13 +54,13 @@ struct RunRecord {
   StepCounters step_counters;
   Counters counters;
 
-  // Monitors and notes. A balance error is relative to the energies that move: compare it with max_kinetic
-  // and with the range of the energies, not with max_energy, whose zero is arbitrary.
+  // Monitors and notes.
   double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest stable step, s
-  double max_balance_error = 0;                                  ///< largest |balance| at a recorded state, J
-  double max_energy = 0;   ///< largest |total energy| at a recorded state, J
-  double max_kinetic = 0;  ///< largest kinetic energy at a recorded state, J
-  double max_gap = 0;      ///< largest gap of a closed joint at a recorded state, m
+  EnergyRange energies;                                          ///< range of the energies at recorded states
+  double energy_moved = 0;                                       ///< the energy that moved (EnergyMonitor), J
+  double energy_share = 0;  ///< largest error of the balance as a share of the energy that moved
+  double max_energy = 0;    ///< largest |total energy| at a recorded state, J; its zero is arbitrary
+  double max_gap = 0;       ///< largest gap of a closed joint at a recorded state, m
   /// Largest ratio of a contact depth to the size of the smaller part, at a recorded state.
   double max_depth = 0;
   double open_gap = 0;                 ///< widest gap of an open joint at the last state, m

@@ -26,8 +26,8 @@ Mat3<T> nearest_rotation(const Mat3<T>& F) {
     const T J = determinant(R, C);
     if (!(min_lane(J) > 0))
       throw InvertedElement(
-          "an element of corotated material is inverted (det F <= 0); use a smaller step, or the neo-Hookean "
-          "law, which allows inverted elements");
+          "an element of corotated material is inverted (det F <= 0); the neo-Hookean law allows inverted "
+          "elements");
     const T g = sqrt(sqrt(contraction(C, C) / (contraction(R, R) * J * J)));
     const T a = T(0.5) * g, b = T(0.5) / (g * J);  // next R = a R + b cofactors(R)
     T step(0.0);
@@ -40,9 +40,7 @@ Mat3<T> nearest_rotation(const Mat3<T>& F) {
     if (min_lane(T(tolerance) - step) > 0) return R;
   }
   throw InvertedElement(
-      "an element of corotated material is almost flat: no nearest rotation was found in 60 iterations; use "
-      "a "
-      "smaller step");
+      "an element of corotated material is almost flat: no nearest rotation was found in 60 iterations");
 }
 
 struct Corotated {

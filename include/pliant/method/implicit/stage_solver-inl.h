@@ -145,10 +145,10 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
     if (iterate(t, r_q, r_v, q, v)) return;
   }
   std::ostringstream message;
-  message << "the equations of an implicit step of " << step_->state.h
-          << " s from t = " << step_->state.time()
-          << " s did not converge: the largest change in the last iteration is that of "
-          << scale_->worst(rho_q_, rho_v_, v) << "; use a smaller step";
+  message
+      << "the equations of the implicit step did not converge: the largest change in the last iteration is "
+         "that of "
+      << scale_->worst(rho_q_, rho_v_, v);
   throw NumericalFailure(message.str(), step_->state.time());
 }
 

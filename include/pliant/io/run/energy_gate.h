@@ -1,0 +1,29 @@
+// The bounds on the error of the energy balance of a run: a warning above the first one, a failure above the
+// second one.
+#pragma once
+
+#include <string>
+
+#include <pliant/simulate/energy_monitor.h>
+#include <pliant/simulate/simulation.h>
+
+namespace pliant {
+
+/// Largest error of the energy balance without a warning, as a share of the energy that moved
+/// (EnergyMonitor).
+inline constexpr double kReportedEnergyShare = 0.01;
+/// Largest error of the energy balance of a run, as a share of the energy that moved. Above it the steps, and
+/// not the forces, make most of the motion, and the run fails.
+inline constexpr double kLargestEnergyShare = 0.5;
+
+/// Throws NumericalFailure if the energies of a simulation are not finite, or if the error of their balance
+/// is above kLargestEnergyShare. The message names the part and the kind of energy that has changed most
+/// since the state `before`. before: the last recorded state. monitor: has the ledger of the present state.
+void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before);
+
+/// Returns a warning about the largest error of the balance of a run; empty up to kReportedEnergyShare.
+std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor);
+/// Returns whether a note is one of energy_note().
+bool is_energy_note(const std::string& note);
+
+}  // namespace pliant

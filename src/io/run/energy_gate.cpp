@@ -1,0 +1,53 @@
+#include <pliant/io/run/energy_gate.h>
+
+#include <cmath>
+#include <sstream>
+
+#include <pliant/io/format/number_text.h>
+#include <pliant/simulate/failure_report.h>
+
+namespace pliant {
+namespace {
+
+constexpr const char* kNote = "warning: the largest error of the energy balance is ";
+
+std::string percent(double share) {
+  return rounded_text(100 * share) + " %";
+}
+
+}  // namespace
+
+void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before) {
+  if (!(monitor.share() > kLargestEnergyShare)) return;
+  const double error = monitor.range().balance;
+  std::ostringstream message;
+  message << "at t = " << rounded_text(simulation.time()) << " s, in steps of "
+          << rounded_text(simulation.state().h) << " s, ";
+  if (std::isfinite(error))
+    message << "the energies have changed by " << rounded_text(error) << " J more than the works, which is "
+            << percent(monitor.share()) << " of the energy that moved (at most "
+            << percent(kLargestEnergyShare) << "): ";
+  else
+    message << "the energies are not finite: ";
+  message << failure_report::largest_energy_change(simulation.dynamics(), before, simulation.state());
+  throw NumericalFailure(message.str(), simulation.time());
+}
+
+std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor) {
+  if (!(monitor.share() > kReportedEnergyShare)) return {};
+  const Integrator& method = simulation.integrator();
+  std::string note = kNote + rounded_text(monitor.range().balance) + " J, which is " +
+                     percent(monitor.share()) + " of the energy that moved (" +
+                     rounded_text(monitor.moved()) + " J). ";
+  if (simulation.tolerance() > 0)
+    return note + "Choose a smaller tolerance than " + rounded_text(simulation.tolerance()) + ".";
+  return note + "The method " + method.name() + " is of order " + std::to_string(method.order()) +
+         ". Choose a smaller step than " + rounded_text(simulation.state().h) +
+         " s, or \"integrator\": \"auto\" with a tolerance.";
+}
+
+bool is_energy_note(const std::string& note) {
+  return note.rfind(kNote, 0) == 0;
+}
+
+}  // namespace pliant

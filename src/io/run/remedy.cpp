@@ -1,0 +1,135 @@
+#include <pliant/io/run/remedy.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/frame_schedule.h>
+#include <pliant/io/run/energy_gate.h>
+#include <pliant/local/solid/inverted_element.h>
+#include <pliant/simulate/energy_monitor.h>
+#include <pliant/simulate/simulation.h>
+#include <pliant/simulate/stable_step.h>
+
+namespace pliant {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Ratio of a tried step to the previous one, and the smallest tried step as a share of the failed one.
+constexpr double kShorter = 0.25, kShortest = 1e-3;
+/// Tried tolerances as multiples of the failed one.
+constexpr double kTolerances[] = {0.01, 10, 100};
+/// The energy balance of a trial is examined after this number of equal parts of the scene.
+constexpr int kChecks = 50;
+
+/// Settings of a trial run, and how the advice names them.
+struct Trial {
+  std::string integrator;
+  double step, tolerance;
+  std::string name;
+};
+
+/// Trial runs of a scene, which end at a common deadline.
+class Trials {
+ public:
+  Trials(Scene& scene, int threads, double seconds, const std::function<bool()>& stop)
+      : scene_(scene),
+        threads_(threads),
+        stop_(stop),
+        deadline_(Clock::now() +
+                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))) {}
+
+  bool over() const { return Clock::now() > deadline_ || (stop_ && stop_()); }
+
+  /// Returns whether a run with these settings reaches the end of the scene with a valid energy balance.
+  bool reaches_end(const Trial& trial) const {
+    try {
+      Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance);
+      EnergyMonitor monitor(simulation.model());
+      monitor.add(simulation.ledger());
+      double next_check = scene_.end / kChecks;
+      for (std::int64_t n = 0; !at_end(simulation, trial, n); ++n) {
+        if (over()) return false;
+        step(simulation, trial);
+        if (simulation.time() < next_check && !at_end(simulation, trial, n + 1)) continue;
+        next_check = simulation.time() + scene_.end / kChecks;
+        monitor.add(simulation.ledger());
+        if (monitor.share() > kLargestEnergyShare) return false;
+      }
+      return true;
+    } catch (const StepFailure&) {
+      return false;
+    } catch (const InvertedElement&) {
+      return false;
+    }
+  }
+
+ private:
+  /// Takes the steps that a run takes, so that the trial has the same bits.
+  void step(Simulation& simulation, const Trial& trial) const {
+    if (trial.tolerance > 0)
+      simulation.step_up_to(scene_.end);
+    else
+      simulation.step(schedule(trial).step());
+  }
+  /// Returns whether a trial has reached the end of the scene after n steps.
+  bool at_end(const Simulation& simulation, const Trial& trial, std::int64_t n) const {
+    return trial.tolerance > 0 ? simulation.time() >= scene_.end : n >= schedule(trial).steps();
+  }
+  FrameSchedule schedule(const Trial& trial) const { return {scene_.end, trial.step, scene_.frame_rate}; }
+
+  Scene& scene_;
+  int threads_;
+  const std::function<bool()>& stop_;
+  Clock::time_point deadline_;
+};
+
+/// Returns the trials with shorter fixed steps, the longest step first.
+std::vector<Trial> shorter_steps(Scene& scene, const FailedRun& failed) {
+  std::vector<double> steps;
+  for (double h = kShorter * failed.step; h > kShortest * failed.step; h *= kShorter) steps.push_back(h);
+  const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
+  if (stable < failed.step) steps.push_back(stable);
+  std::sort(steps.begin(), steps.end(), std::greater<>());
+  std::vector<Trial> trials;
+  for (const double h : steps)
+    trials.push_back(
+        {failed.integrator, std::stod(rounded_text(h)), 0, "a step of " + rounded_text(h) + " s"});
+  return trials;
+}
+
+std::vector<Trial> other_tolerances(const Scene& scene, const FailedRun& failed) {
+  std::vector<Trial> trials;
+  for (const double factor : kTolerances) {
+    const double exact = std::clamp(factor * scene.tolerance, kMinTolerance, kMaxTolerance);
+    trials.push_back(
+        {failed.integrator, 0, std::stod(rounded_text(exact)), "a tolerance of " + rounded_text(exact)});
+  }
+  return trials;
+}
+
+}  // namespace
+
+std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
+                        const std::function<bool()>& stop) {
+  std::vector<Trial> trials =
+      failed.step > 0 ? shorter_steps(scene, failed) : other_tolerances(scene, failed);
+  if (failed.step > 0 || failed.integrator != kAutomatic)
+    trials.push_back({kAutomatic, 0, kStandardTolerance, "the integrator auto"});
+  const Trials runs(scene, failed.threads, seconds, stop);
+  std::string tried;
+  for (const Trial& trial : trials) {
+    if (runs.over()) break;
+    if (runs.reaches_end(trial)) return trial.name + " reaches the end of the scene";
+    tried += (tried.empty() ? "" : ", ") + trial.name;
+  }
+  return "no remedy was found in trials of " + rounded_text(seconds) + " s" +
+         (tried.empty() ? "" : ", which failed with " + tried);
+}
+
+}  // namespace pliant

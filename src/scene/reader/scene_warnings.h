@@ -1,0 +1,16 @@
+// Warnings about scenes that are valid, but probably not meant.
+#pragma once
+
+#include <pliant/scene/reader/reader.h>
+#include <pliant/scene/scene.h>
+
+#include "scene/scene_faults.h"
+
+namespace pliant {
+
+/// Warns if the sizes of parts differ by more than a factor of a million, if a ground of given height is
+/// drawn but not solid, and if the camera sees no point of a part at time 0. root: the whole scene, read
+/// without errors.
+void add_warnings(const Scene& scene, const Reader& root, SceneFaults& faults);
+
+}  // namespace pliant
