@@ -12,60 +12,18 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "io/new_folder.h"
+#include "program.h"
 
 namespace cli_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+using test::has;
+using test::kTop;
+using test::Result;
+using test::TestFolder;
 
 namespace {
-
-const char* const kTop = R"({
-  "gravity": [0, 0, 0],
-  "time": {"end": 0.5, "step": 0.001, "integrator": "rk4"},
-  "parts": [{"name": "top", "shape": "ellipsoid", "deformations": ["twist"],
-             "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.1, "twist.angle": {"rest": 0.1, "stiffness": 100}},
-             "angular_velocity": [1, 0.1, 2], "velocity": [0.2, 0, 0], "resolution": 2}],
-  "output": {"size": [64, 48]}
-})";
-
-struct Result {
-  int code = -1;
-  std::string out, err;
-};
-
-// A new folder that contains a scene. The program runs in this folder.
-struct TestFolder {
-  NewFolder folder;
-  TestFolder() { set_bytes(folder / "top.json", kTop); }
-
-  // Runs the program in a shell and returns its exit code and output. before: text of the shell command in
-  // front of the program, for example settings of environment variables.
-  Result pliant(const std::string& arguments, const std::string& before = "") const {
-    const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
-                             arguments + " > .out 2> .err";
-    const int status = std::system(("LC_ALL=C " + line).c_str());
-    Result result;
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.out = bytes_of(folder / ".out");
-    result.err = bytes_of(folder / ".err");
-    return result;
-  }
-  // Returns run.json of the run in a folder.
-  Json record(const std::string& run) const { return Json::parse(bytes_of(folder / (run + "/run.json"))); }
-  // Returns the bytes of the recording and of the trajectory of a run.
-  std::string motion(const std::string& run) const {
-    std::string bytes;
-    for (const char* file : {"t.npy", "q.npy", "v.npy", "modes.npy", "trajectory.csv"})
-      bytes += bytes_of(folder / (run + "/" + file));
-    return bytes;
-  }
-};
-
-bool has(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
 
 // Starts a run of 100 000 s. Waits until the run has recorded its first states, at most 12 s. Returns the
 // number of the process.

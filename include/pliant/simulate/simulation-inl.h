@@ -61,7 +61,9 @@ auto at_time(double t, F&& act) {
   try {
     return act();
   } catch (const InvertedElement& failure) {
-    throw NumericalFailure(failure.what(), t);
+    std::ostringstream message;
+    message << "at t = " << t << " s: " << failure.what();
+    throw NumericalFailure(message.str(), t);
   }
 }
 

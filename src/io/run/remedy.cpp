@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include <pliant/io/format/number_text.h>
-#include <pliant/io/frame_schedule.h>
 #include <pliant/io/run/energy_gate.h>
+#include <pliant/io/run/scheduled_step.h>
 #include <pliant/local/solid/inverted_element.h>
 #include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/simulation.h>
@@ -24,8 +23,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kShorter = 0.25, kShortest = 1e-3;
 /// Tried tolerances as multiples of the failed one.
 constexpr double kTolerances[] = {0.01, 10, 100};
-/// The energy balance of a trial is examined after this number of equal parts of the scene.
-constexpr int kChecks = 50;
 
 /// Settings of a trial run, and how the advice names them.
 struct Trial {
@@ -46,18 +43,19 @@ class Trials {
 
   bool over() const { return Clock::now() > deadline_ || (stop_ && stop_()); }
 
-  /// Returns whether a run with these settings reaches the end of the scene with a valid energy balance.
+  /// Returns whether a run with these settings reaches the end of the scene with a valid energy balance. The
+  /// trial has the steps of a run, and examines the states that the run would record.
   bool reaches_end(const Trial& trial) const {
     try {
       Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance);
+      const FrameSchedule schedule = trial.tolerance > 0
+                                         ? FrameSchedule::with_free_steps(scene_.end, scene_.frame_rate)
+                                         : FrameSchedule(scene_.end, trial.step, scene_.frame_rate);
       EnergyMonitor monitor(simulation.model());
       monitor.add(simulation.ledger());
-      double next_check = scene_.end / kChecks;
-      for (std::int64_t n = 0; !at_end(simulation, trial, n); ++n) {
+      while (!at_end(simulation, schedule)) {
         if (over()) return false;
-        step(simulation, trial);
-        if (simulation.time() < next_check && !at_end(simulation, trial, n + 1)) continue;
-        next_check = simulation.time() + scene_.end / kChecks;
+        if (!scheduled_step(simulation, schedule)) continue;
         monitor.add(simulation.ledger());
         if (monitor.share() > kLargestEnergyShare) return false;
       }
@@ -70,19 +68,6 @@ class Trials {
   }
 
  private:
-  /// Takes the steps that a run takes, so that the trial has the same bits.
-  void step(Simulation& simulation, const Trial& trial) const {
-    if (trial.tolerance > 0)
-      simulation.step_up_to(scene_.end);
-    else
-      simulation.step(schedule(trial).step());
-  }
-  /// Returns whether a trial has reached the end of the scene after n steps.
-  bool at_end(const Simulation& simulation, const Trial& trial, std::int64_t n) const {
-    return trial.tolerance > 0 ? simulation.time() >= scene_.end : n >= schedule(trial).steps();
-  }
-  FrameSchedule schedule(const Trial& trial) const { return {scene_.end, trial.step, scene_.frame_rate}; }
-
   Scene& scene_;
   int threads_;
   const std::function<bool()>& stop_;

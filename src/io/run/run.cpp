@@ -14,6 +14,7 @@
 #include <pliant/io/run/joint_notes.h>
 #include <pliant/io/run/remedy.h>
 #include <pliant/io/run/run_files.h>
+#include <pliant/io/run/scheduled_step.h>
 #include <pliant/io/run/skipped.h>
 #include <pliant/io/trajectory.h>
 #include <pliant/part/mesh/surface_turn.h>
@@ -421,33 +422,17 @@ void Run::write_record() {
   saved_ = Clock::now();
 }
 
-bool Run::at_end() const {
-  return scene_->tolerance > 0 ? simulation_->time() >= schedule_.end()
-                               : simulation_->state().step >= schedule_.steps();
-}
-
-/// Performs one step. Returns whether the new state is to be recorded.
-bool Run::step_once() {
-  if (scene_->tolerance == 0) {
-    simulation_->step(schedule_.step());
-    return schedule_.records(simulation_->state().step);
-  }
-  const double before = simulation_->time();
-  simulation_->step_up_to(schedule_.end());
-  return schedule_.records(before, simulation_->time(), simulation_->state().h);
-}
-
 void Run::step_to_end() {
-  if (at_end()) return;
+  if (at_end(*simulation_, schedule_)) return;
   Clock::time_point flushed = Clock::now();
   const double first_time = simulation_->time();
   progress_->begin("simulate", schedule_.end() - first_time, "s");
-  while (!at_end()) {
+  while (!at_end(*simulation_, schedule_)) {
     if (options_.stop && options_.stop()) {
       stopped_ = true;
       break;
     }
-    const bool records = step_once();
+    const bool records = scheduled_step(*simulation_, schedule_);
     progress_->advance(simulation_->time() - first_time);
     if (!records) continue;
     record_state();

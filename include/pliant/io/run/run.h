@@ -88,8 +88,6 @@ class Run {
   void record_last_valid_state();
   void end_failed(double elapsed);
   std::string remedy(double elapsed) const;
-  bool at_end() const;
-  bool step_once();
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);

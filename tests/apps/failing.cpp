@@ -1,0 +1,94 @@
+// Scenes that once crashed, or reported success with a motion without meaning: they run, or end with a
+// message that names the cause, the time and a remedy that works.
+#include <cmath>
+#include <string>
+
+#include "catch.h"
+#include "program.h"
+
+namespace failing_test {
+
+using test::has;
+using test::Result;
+using test::TestFolder;
+
+namespace {
+
+Result run(const TestFolder& place, const std::string& scene, const std::string& options = "") {
+  return place.pliant("run '" PLIANT_FAILING "/" + scene + ".json' -o out --force " + options);
+}
+
+/// Returns the step that a message recommends: "a step of H s reaches the end of the scene".
+std::string recommended_step(const std::string& message) {
+  const std::string before = "; a step of ", after = " s reaches the end of the scene";
+  const std::size_t end = message.find(after);
+  if (end == std::string::npos) return {};
+  const std::size_t start = message.rfind(before, end) + before.size();
+  return message.substr(start, end - start);
+}
+
+}  // namespace
+
+TEST_CASE("a scene without degrees of freedom runs with every method") {
+  const TestFolder place;
+  for (const char* method : {"auto", "semi_implicit_euler", "rk4", "linearly_implicit", "implicit_midpoint",
+                             "esdirk", "dormand_prince", "dop853"}) {
+    INFO(method);
+    const Result result = run(place, "only_fixed", std::string("--integrator ") + method);
+    CHECK(result.code == 0);
+    CHECK(place.record("out")["monitors"]["max_balance_error"] == 0);
+  }
+}
+
+TEST_CASE("soft and rigid bodies in deep contact run with error control") {
+  const TestFolder place;
+  const Result result = run(place, "soft_contact_in_halves");
+  CHECK(result.code == 0);
+  CHECK(place.record("out")["monitors"]["balance_share"] < 0.01);
+}
+
+TEST_CASE("energies that grow without bound end a run with code 5, names and a step that works") {
+  const TestFolder place;
+  for (const char* scene : {"open_slider_gains_energy", "limits_gain_energy"}) {
+    INFO(scene);
+    const Result result = run(place, scene);
+    CHECK(result.code == 5);
+    CHECK(has(result.err, "of the energy that moved (at most 50 %)"));
+    CHECK(has(result.err, "energy of part 'p"));
+    CHECK(has(result.err, "at t = "));
+    CHECK(place.record("out")["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
+    CHECK_FALSE(has(place.motion("out"), "nan"));
+  }
+  const std::string step = recommended_step(run(place, "limits_gain_energy").err);
+  REQUIRE_FALSE(step.empty());
+  CHECK(run(place, "limits_gain_energy", "--step " + step).code == 0);
+  CHECK(has(run(place, "open_slider_gains_energy").err, "no remedy was found in trials of 2 s"));
+}
+
+TEST_CASE("joints that cannot hold together end a run with code 4, with their names and the gap") {
+  const TestFolder place;
+  const Result strings = run(place, "two_strings");
+  CHECK(strings.code == 4);
+  CHECK(has(strings.err, "string 'j2' stays open by 0.0"));
+  CHECK(has(strings.err, "held open by string 'j1'"));
+  const Result slider = run(place, "slider_and_ball");
+  CHECK(slider.code == 4);
+  CHECK(has(slider.err, "slider 'slider1' stays open by 3.9"));
+  CHECK(has(slider.err, "held open by ball 'ball2'"));
+}
+
+TEST_CASE("an error of the energy balance above 1 % is told, and ends a strict run with code 6") {
+  const TestFolder place;
+  const std::string tumbling =
+      "run top.json -o out --force --end 20 --step 0.01 --integrator semi_implicit_euler "
+      "--set /parts/0/angular_velocity=[3,9,2]";
+  const Result told = place.pliant(tumbling);
+  CHECK(told.code == 0);
+  CHECK(has(told.err, "warning: the largest error of the energy balance is "));
+  CHECK(has(told.err, "The method semi_implicit_euler is of order 1."));
+  CHECK(place.record("out")["monitors"]["balance_share"] > 0.01);
+  CHECK(place.pliant(tumbling + " --strict").code == 6);
+  CHECK(place.pliant("run top.json -o out --force --strict").code == 0);
+}
+
+}  // namespace failing_test
