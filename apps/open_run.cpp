@@ -45,7 +45,10 @@ OpenRun open_run(const std::filesystem::path& folder) {
 
 std::int64_t OpenRun::frames() const {
   const double reached = recording->time(recording->rows() - 1);
-  return pliant::FrameSchedule::with_exact_step(reached, record.step, record.frame_rate).frames(reached);
+  const pliant::FrameSchedule schedule =
+      record.tolerance > 0 ? pliant::FrameSchedule::with_free_steps(reached, record.frame_rate)
+                           : pliant::FrameSchedule::with_exact_step(reached, record.step, record.frame_rate);
+  return schedule.frames(reached);
 }
 
 void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,

@@ -126,30 +126,46 @@ double Model::gap(const State& state, int joint) const {
   return m.joint->one_sided() ? std::max(0.0, -C[0]) : C.norm();
 }
 
+namespace {
+
+/// Returns the part whose first number, m.q0 or m.v0, is the largest one up to i. The parts that have such
+/// numbers are in their order; fixed parts, with -1, may be between them.
+const PartModel& part_with(const std::vector<PartModel>& parts, int i, int PartModel::*first) {
+  std::size_t low = 0, high = parts.size();
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    std::size_t next = middle;
+    while (next < high && parts[next].*first < 0) ++next;
+    if (next < high && parts[next].*first <= i)
+      low = next;
+    else
+      high = middle;
+  }
+  return parts[low];
+}
+
+}  // namespace
+
 std::string Model::velocity_name(int i) const {
   static constexpr std::array<const char*, 6> rigid{"c_dot.x", "c_dot.y", "c_dot.z",
                                                     "omega.x", "omega.y", "omega.z"};
-  for (const PartModel& m : parts_) {
-    if (m.v0 < 0 || i < m.v0 || i >= m.v0 + m.n_v()) continue;
-    const int k = i - m.v0;
-    if (k < 6) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    if (k >= 6 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 6 - m.n_s) + "_dot";
-    return m.part->name() + "." + m.part->parameters().moving(k - 6).name + "_dot";
-  }
-  throw std::out_of_range("no velocity number " + std::to_string(i));
+  if (i < 0 || i >= n_v()) throw std::out_of_range("no velocity number " + std::to_string(i));
+  const PartModel& m = part_with(parts_, i, &PartModel::v0);
+  const int k = i - m.v0;
+  if (k < 6) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
+  if (k >= 6 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 6 - m.n_s) + "_dot";
+  return m.part->name() + "." + m.part->parameters().moving(k - 6).name + "_dot";
 }
 
 std::string Model::coordinate_name(int i) const {
   static constexpr std::array<const char*, 7> rigid{"c.x",    "c.y",    "c.z",   "quat.w",
                                                     "quat.x", "quat.y", "quat.z"};
-  for (const PartModel& m : parts_) {
-    if (m.q0 < 0 || i < m.q0 || i >= m.q0 + m.n_q()) continue;
-    const int k = i - m.q0;
-    if (k < 7) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    if (k >= 7 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 7 - m.n_s);
-    return m.part->name() + "." + m.part->parameters().moving(k - 7).name;
-  }
-  throw std::out_of_range("no coordinate number " + std::to_string(i));
+  if (i < 0 || i >= n_q()) throw std::out_of_range("no coordinate number " + std::to_string(i));
+  const PartModel& m = part_with(parts_, i, &PartModel::q0);
+  const int k = i - m.q0;
+  if (k < 7) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
+  if (k >= 7 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 7 - m.n_s);
+  return m.part->name() + "." + m.part->parameters().moving(k - 7).name;
 }
 
 }  // namespace pliant

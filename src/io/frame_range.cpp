@@ -62,6 +62,9 @@ void FrameRange::parse_shard(const std::string& text) {
                                     n = pieces.size() == 2 ? number(pieces[1]) : std::nullopt;
   if (!i || !n || *i < 1 || *i > *n)
     throw std::invalid_argument("shard \"" + text + "\" must be i/n with 1 <= i <= n");
+  if (*n > kMaxFrames)
+    throw std::invalid_argument("shard \"" + text + "\" has more shards than a recording has frames; " +
+                                "expected at most " + std::to_string(kMaxFrames));
   shard = *i - 1;
   shards = *n;
 }

@@ -41,8 +41,10 @@ void SceneFaults::twice(const JsonValue& first, const JsonValue& again) {
 
 void SceneFaults::unknown(const JsonValue& name, const std::string& kind,
                           const std::vector<std::string>& names) {
-  value(name, "unknown " + kind +
-                  (names.empty() ? "; the scene has no " + kind + "s" : name_hint(name.string(), names)));
+  const std::string hint = diagnostics_.full() ? std::string()  // the message is counted, but not stored
+                           : names.empty()     ? "; the scene has no " + kind + "s"
+                                               : name_hint(name.string(), names);
+  value(name, "unknown " + kind + hint);
 }
 
 std::string brief(double x) {

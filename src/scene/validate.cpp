@@ -237,7 +237,7 @@ class Validator {
     const Type* alternatives = std::exchange(alternatives_, nullptr);
     for (const JsonValue::Member& member : value.members()) {
       if (faults_.full()) return;
-      const bool ignored = schema::is_ignored_key(member.key) || member.key == tag ||
+      const bool ignored = schema::is_ignored_key(member.key) || (!tag.empty() && member.key == tag) ||
                            (&value == root_ && member.key == "$schema");
       if (ignored) continue;
       const Field* field = record.find(member.key);

@@ -519,4 +519,25 @@ TEST_CASE(
   CHECK(place.record("out")["monitors"]["open_gap"] == 1);
 }
 
+TEST_CASE("frames of a run with a tolerance are drawn and exported") {
+  const TestFolder place;
+  REQUIRE(place.pliant("run top.json -o out --tolerance 1e-6 --end 0.1").code == 0);
+  CHECK(place.pliant("export out -o meshes").code == 0);
+  CHECK(fs::exists(place.folder / "meshes/frame_000002.obj"));
+}
+
+TEST_CASE("empty keys, text after the scene and impossible shards are refused") {
+  const TestFolder place;
+  for (const std::string& text :
+       {std::string(R"({"parts": [{"name": "a", "shape": "sphere"}], "": 3})"),
+        std::string("{\"parts\": [{\"name\": \"a\", \"shape\": \"sphere\"}]}\0 {}", 49)}) {
+    set_bytes(place.folder / "odd.json", text);
+    CHECK(place.pliant("check odd.json").code == 3);
+  }
+  const Result set = place.pliant("check top.json --set /=5");
+  CHECK(set.code == 3);
+  CHECK(has(set.err, "unknown key"));
+  CHECK(place.pliant("render out --shard 9999999999/9999999999 -o x").code == 2);
+}
+
 }  // namespace cli_test

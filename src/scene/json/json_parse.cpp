@@ -19,6 +19,9 @@ namespace {
 
 using nlohmann::json;
 
+/// Largest number of keys of an object that are reported as given twice.
+constexpr std::size_t kMaxDuplicates = 100;
+
 bool is_comment(std::string_view key) {
   return key == "//";
 }
@@ -31,6 +34,10 @@ class Builder final : public nlohmann::json_sax<json> {
   }
 
   JsonValue release_root() { return std::move(root_); }
+  /// Throws Fault if the text continues after the value.
+  void require_end() const {
+    if (skip_space(text_, at_) < text_.size()) stop();
+  }
 
   bool null() override { return add(word_token(), std::monostate()); }
   bool boolean(bool value) override { return add(word_token(), value); }
@@ -178,13 +185,14 @@ class Builder final : public nlohmann::json_sax<json> {
     return true;
   }
 
+  /// Reports the keys of an object that are given twice, at most kMaxDuplicates of them.
   void report_duplicates(const JsonValue::Object& members) const {
     std::vector<std::size_t> order(members.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return members[a].key < members[b].key; });
-    std::size_t first = 0;
-    for (std::size_t i = 1; i < order.size(); ++i) {
+    std::size_t first = 0, reported = 0;
+    for (std::size_t i = 1; i < order.size() && reported < kMaxDuplicates; ++i) {
       const JsonValue::Member& member = members[order[i]];
       if (member.key != members[order[first]].key) {
         first = i;
@@ -192,6 +200,7 @@ class Builder final : public nlohmann::json_sax<json> {
         const std::size_t before = members[order[first]].key_place.offset;
         options_.report({member.key_place.offset, pointer_join(pointer(), member.key),
                          "key given twice; the first is at " + options_.place(before)});
+        ++reported;
       }
     }
   }
@@ -212,6 +221,7 @@ JsonValue parse(std::string_view text, const ParseOptions& options) {
   if (is_foreign(text, &foreign)) throw foreign;
   Builder builder(text, options);
   json::sax_parse(text.begin(), text.end(), &builder);
+  builder.require_end();  // the event parser takes a zero byte for the end of the text
   return builder.release_root();
 }
 
