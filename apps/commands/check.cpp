@@ -6,6 +6,7 @@
 
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/run/run.h>
+#include <pliant/io/run/scheduled_step.h>
 #include <pliant/io/state_row.h>
 #include <pliant/scene/read_scene.h>
 #include <pliant/simulate/stable_step.h>
@@ -22,20 +23,29 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
+using WallClock = std::chrono::steady_clock;
+
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
 // Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
-// run for 0.05 s of wall-clock time, at least one step, and extrapolates their time to the end of the run.
+// run for kTrial seconds of wall-clock time, at least one step. If they do not reach the end of the run, the
+// second half of this time is extrapolated, because the first steps to a tolerance are short.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  double seconds = 0;
-  while (simulation.time() < schedule.end() && seconds < 0.05) {
-    if (simulation.tolerance() > 0)
-      simulation.step_up_to(schedule.end());
-    else
-      simulation.step(schedule.step());
-    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  constexpr double kTrial = 0.2;
+  const WallClock::time_point start = WallClock::now();
+  double seconds = 0, half_seconds = 0, half_time = 0;
+  while (!pliant::at_end(simulation, schedule) && seconds < kTrial) {
+    pliant::scheduled_step(simulation, schedule);
+    seconds = seconds_since(start);
+    if (seconds > kTrial / 2) continue;
+    half_seconds = seconds;
+    half_time = simulation.time();
   }
-  return simulation.time() > 0 ? seconds / simulation.time() * schedule.end() : 0;
+  if (pliant::at_end(simulation, schedule)) return seconds;
+  const double rate = (seconds - half_seconds) / (simulation.time() - half_time);
+  return seconds + rate * (schedule.end() - simulation.time());
 }
 
 // Returns the number of obstacles as text, for example ", 2 obstacles of 644 triangles", or an empty text if
@@ -77,7 +87,16 @@ void print_estimate(pliant::Scene& scene) {
             << " MB\n";
 }
 
+// Tells how long it took to read and prepare a scene, if this is a noticeable time.
+void print_preparation(double seconds) {
+  constexpr double kNoticeable = 1;
+  if (seconds > kNoticeable)
+    std::cout << "reading and preparing the scene took " << pliant::rounded_text(seconds, 2)
+              << " s, and takes as long in every run\n";
+}
+
 int check(const CheckCommand& command) {
+  const WallClock::time_point start = WallClock::now();
   const bool machine = command.diagnostics == "json";
   pliant::Diagnostics diagnostics;
   std::unique_ptr<pliant::Scene> scene;
@@ -92,7 +111,10 @@ int check(const CheckCommand& command) {
     std::cout << diagnostics.json() << "\n";
   else if (diagnostics.warnings() > 0)
     std::cerr << diagnostics.text();
-  if (!machine) print_estimate(*scene);
+  if (machine) return kDone;
+  const double preparation = seconds_since(start);
+  print_estimate(*scene);
+  print_preparation(preparation);
   return kDone;
 }
 

@@ -403,6 +403,7 @@ class Projection {
     double widest = 0;
     auto consider = [&](int j, double gap, double allowed) {
       if (state_.joints[at(j)] != JointMode::closed || !(gap > allowed) || gap <= widest) return;
+      if (!std::isfinite(gap)) return;  // the check of the state reports it
       open = j;
       widest = gap;
     };

@@ -64,7 +64,10 @@ PLIANT_INLINE std::string fault_of(const Model& model, const State& state, const
       if (!(std::abs(state.v[i]) <= kLargest)) return model.velocity_name(static_cast<int>(i)) + not_finite;
     for (Eigen::Index i = 0; i < state.q.size(); ++i)
       if (!(std::abs(state.q[i]) <= kLargest)) return model.coordinate_name(static_cast<int>(i)) + not_finite;
-    return std::string("the work of the ledger") + not_finite;
+    for (int k = 0; k < kWorks; ++k)
+      if (!std::isfinite(state.work[k]))
+        return std::string("the work of ") + kWorkNames[static_cast<std::size_t>(k)] + not_finite;
+    return "the sum of the squares of the coordinates or of the velocities is too large";
   }
   const std::string part = part_without_orientation(model, state);
   if (part.empty()) return {};
@@ -129,12 +132,30 @@ PLIANT_INLINE std::string place(double t, double h) {
   return message.str();
 }
 
+/// Returns a text that names the part with the largest velocity of any coordinate.
+inline std::string fastest_part(const Model& model, const State& state) {
+  const PartModel* fastest = nullptr;
+  double largest = 0;
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    const double rate = state.v.segment(m.v0, m.n_v()).lpNorm<Eigen::Infinity>();
+    if (rate <= largest) continue;
+    largest = rate;
+    fastest = &m;
+  }
+  if (fastest == nullptr) return {};
+  std::ostringstream message;
+  message << "; part '" << fastest->part->name() << "' is fastest before the step, with " << largest
+          << " m/s or rad/s";
+  return message.str();
+}
+
 PLIANT_INLINE std::string cause(const Dynamics& dynamics, const State& before) {
   Workspace<double> scratch;
   std::string term = dynamics.diagnose(before.time(), before.q, before.v, before, scratch);
   if (term.empty()) term = dynamics.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
   if (!term.empty()) return "the first term that is not finite is " + term;
-  return "the motion has grown without bound";
+  return "the motion has grown without bound" + fastest_part(dynamics.model(), before);
 }
 
 }  // namespace pliant::failure_report
