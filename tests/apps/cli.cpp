@@ -522,7 +522,7 @@ TEST_CASE(
 TEST_CASE("frames of a run with a tolerance are drawn and exported") {
   const TestFolder place;
   REQUIRE(place.pliant("run top.json -o out --tolerance 1e-6 --end 0.1").code == 0);
-  CHECK(place.pliant("export out -o meshes").code == 0);
+  CHECK(place.pliant("export out --to obj -o meshes").code == 0);
   CHECK(fs::exists(place.folder / "meshes/frame_000002.obj"));
 }
 

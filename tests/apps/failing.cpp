@@ -91,4 +91,21 @@ TEST_CASE("an error of the energy balance above 1 % is told, and ends a strict r
   CHECK(place.pliant("run top.json -o out --force --strict").code == 0);
 }
 
+TEST_CASE("a part below the drawn ground, an angle above a turn and sizes far apart are told") {
+  const TestFolder place;
+  set_bytes(place.folder / "odd.json", R"({
+    "time": {"end": 1, "step": 0.01, "integrator": "rk4"}, "ground": {"height": 0},
+    "camera": {"eye": [5, 0, 1], "target": [0, 0, 1]},
+    "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": 0.1}, "position": [0, 0, 1],
+               "orientation": {"axis": [0, 0, 1], "angle": 90}},
+              {"name": "grain", "shape": "sphere", "parameters": {"r": 1e-8}, "position": [9, 0, 1]}]
+  })");
+  const Result result = place.pliant("run odd.json -o out");
+  CHECK(result.code == 0);
+  CHECK(has(result.err, "part 'ball' is below the drawn ground, which is not solid"));
+  CHECK(has(result.err, "90; this is more than a full turn; angles are in radians"));
+  CHECK(has(result.err, "times that of part \"grain\""));
+  CHECK(has(result.err, "the camera does not see this part at time 0"));
+}
+
 }  // namespace failing_test

@@ -61,7 +61,9 @@ void check_run(const Case& model, const std::string& method, double tolerance, b
   CHECK(simulation.time() == Approx(0.1));
   CHECK(simulation.state().q.allFinite());
   CHECK(ledger.work.allFinite());
-  CHECK(std::abs(ledger.balance) <= (method == "semi_implicit_euler" ? 1e-2 : 1e-12) * (1 + ledger.kinetic));
+  // In free fall the first-order method errs by the share h / t = 0.1 of the kinetic energy.
+  const double allowed = method == "semi_implicit_euler" ? 0.1 * ledger.kinetic : 0;
+  CHECK(std::abs(ledger.balance) <= (1 + 1e-9) * allowed + 1e-12);
 }
 
 }  // namespace

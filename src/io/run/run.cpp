@@ -294,6 +294,22 @@ void Run::note_turns() {
   }
 }
 
+/// Adds a note, once, if a visible part is below the drawn ground.
+void Run::note_ground() {
+  if (reported_ground_ || !scene_->ground.visible || !scene_->ground.height) return;
+  const std::vector<PartModel>& parts = simulation_->model().parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PartModel& m = parts[i];
+    if (m.q0 < 0 || !scene_->appearance[i].visible) continue;
+    if (!(simulation_->state().q[m.q0 + 2] < *scene_->ground.height - m.part->size())) continue;
+    reported_ground_ = true;
+    note("at t = " + rounded_text(simulation_->time()) + " s part '" + m.part->name() +
+         "' is below the drawn ground, which is not solid; add a plane at its height, " +
+         rounded_text(*scene_->ground.height) + " m, to \"contact\"");
+    return;
+  }
+}
+
 /// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
 /// write_record() must have updated the counters.
 void Run::note_violations() {
@@ -361,6 +377,7 @@ void Run::record_state() {
   note_redundancy();
   note_engagements();
   note_turns();
+  note_ground();
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.energies = energies_->range();
   record_.energy_moved = energies_->moved();

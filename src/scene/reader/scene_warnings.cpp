@@ -26,22 +26,6 @@ void warn_about_sizes(const Scene& scene, const Reader& root, SceneFaults& fault
                   " times that of part \"" + (*smallest)->name() + "\"; lengths are in metres");
 }
 
-/// Returns whether a plane that is horizontal at time 0 is at height z, m.
-bool has_solid_ground(const Scene& scene, double z) {
-  const auto& planes = scene.body.contact.planes;
-  return std::any_of(planes.begin(), planes.end(), [&](const ContactPlane& plane) {
-    const double height = plane.point.value(0).z();
-    return plane.normal.z() > 0.99 && std::abs(height - z) <= 1e-6 * std::max(1.0, std::abs(z));
-  });
-}
-
-void warn_about_ground(const Scene& scene, const Reader& root, SceneFaults& faults) {
-  if (!scene.ground.visible || !scene.ground.height) return;
-  if (has_solid_ground(scene, *scene.ground.height)) return;
-  faults.warn(root.object("ground").at("height"),
-              "the ground is drawn here but is not solid; add a plane at this height to \"contact\"");
-}
-
 /// Returns whether a ball is outside the picture of a camera with given eye and target.
 bool is_outside(const Scene& scene, const Vec3<double>& centre, double radius) {
   const Vec3<double> forward = (*scene.camera.target - *scene.camera.eye).normalized(),
@@ -69,7 +53,6 @@ void warn_about_camera(const Scene& scene, const Reader& root, SceneFaults& faul
 
 void add_warnings(const Scene& scene, const Reader& root, SceneFaults& faults) {
   warn_about_sizes(scene, root, faults);
-  warn_about_ground(scene, root, faults);
   warn_about_camera(scene, root, faults);
 }
 

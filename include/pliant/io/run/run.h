@@ -100,6 +100,7 @@ class Run {
   void note_redundancy();
   void note_engagements();
   void note_turns();
+  void note_ground();
   void note_violations();
   void note_energy_balance();
   void replace_notes(bool (*is_old)(const std::string&), const std::vector<std::string>& notes);
@@ -125,7 +126,7 @@ class Run {
   StepCounters earlier_steps_;  // counters of earlier sessions of a resumed run
   Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
-  bool stopped_ = false;
+  bool stopped_ = false, reported_ground_ = false;
 };
 
 /// Returns the steps and frames of a scene.
