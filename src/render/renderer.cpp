@@ -20,7 +20,9 @@ int checked_side(int side, const char* name) {
 class Renderer::Impl {
  public:
   Impl(int w, int h, GlBackend backend)
-      : width(checked_side(w, "width")), height(checked_side(h, "height")), context(backend) {
+      : width(checked_side(w, "width")),
+        height(checked_side(h, "height")),
+        context((require_picture_memory(w, h), backend)) {
     const GlContext::Current current(context);
     pipeline = std::make_unique<Pipeline>(context, width, height);
   }

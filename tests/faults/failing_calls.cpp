@@ -1,0 +1,105 @@
+// System calls on the files of a run fail. The run ends with code 7 and a message, or does not need the call.
+// Resumed, it gives the files of an unbroken run.
+#include <algorithm>
+#include <cerrno>
+
+#include <sys/syscall.h>
+
+#include "catch.h"
+#include "faulty_run.h"
+
+namespace failing_calls_test {
+
+using namespace faults;
+
+namespace {
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// Returns the errors that a kind of call can report.
+std::vector<int> errors_of(long what) {
+  switch (what) {
+    case SYS_write:
+    case SYS_pwrite64:
+      return {ENOSPC, EIO, EINTR, EDQUOT};
+    case SYS_fsync:
+      return {EIO, ENOSPC, EINTR};
+    case SYS_openat:
+      return {EMFILE, EACCES, ENOSPC, EROFS, EINTR};
+    case SYS_ftruncate:
+      return {EIO, EINTR};
+    case SYS_pread64:
+    case SYS_read:
+      return {EIO, EINTR};
+    case SYS_close:
+      return {EIO, ENOSPC};
+    case SYS_flock:
+      return {ENOLCK, EOPNOTSUPP, EINTR};
+    case SYS_mkdir:
+      return {ENOSPC, EACCES, EROFS};
+    case SYS_rename:
+      return {EIO, ENOSPC};
+    case SYS_unlink:
+    case SYS_rmdir:
+      return {EIO, EROFS};
+    default:
+      return {};
+  }
+}
+
+/// Lets one call of a run fail, and resumes the run. Returns what is wrong; empty if all is right.
+std::string fail_and_resume(const FaultyRun& place, long call, int error,
+                            const std::map<std::string, std::string>& unbroken) {
+  fs::remove_all(place / "broken");
+  const Ended ended = place.traced("broken", "", [&](const Call& now) {
+    return Action{false, now.number == call ? error : 0};
+  });
+  const std::string told = place.output();
+  if (error == EINTR && ended.code != 0) return "not repeated: " + told;
+  if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
+  if (ended.code == 7 && !has(told, "pliant: error: ")) return "no message: " + told;
+  const bool locks = error == ENOLCK || error == EOPNOTSUPP;
+  if (locks && !has(told, "does not lock files")) return "the lock is not named: " + told;
+  const int code = place.run("broken", fs::exists(place / "broken") ? "--resume" : "");
+  if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + place.output();
+  return difference(place.files("broken"), unbroken);
+}
+
+/// Lets about `count` of the calls on files of a run fail, each in one run.
+void check_failures(const std::string& options, std::size_t count) {
+  if (!can_trace()) {
+    WARN("skipped: this system does not let a process trace its children");
+    return;
+  }
+  const FaultyRun place(options);
+  REQUIRE(place.run("unbroken") == 0);
+  const auto unbroken = place.files("unbroken");
+  std::vector<std::pair<long, int>> faults;
+  place.traced(
+      "broken", "",
+      [&](const Call& call) {
+        if (has(call.path, "broken"))
+          for (const int error : errors_of(call.what)) faults.emplace_back(call.number, error);
+        return Action{};
+      },
+      true);
+  REQUIRE(faults.size() > 100);
+  const std::size_t stride = std::max<std::size_t>(1, faults.size() / count);
+  for (std::size_t i = 0; i < faults.size(); i += stride) {
+    INFO("call " << faults[i].first << " failed with error " << faults[i].second);
+    CHECK(fail_and_resume(place, faults[i].first, faults[i].second, unbroken) == "");
+  }
+}
+
+}  // namespace
+
+TEST_CASE("I51: a call on a file that fails ends the run with code 7, and the run can be resumed") {
+  check_failures("--obj --end 0.02 --quiet --threads 1", 40);
+}
+TEST_CASE("I51: each of 600 calls on files may fail, and the run can be resumed", "[long]") {
+  check_failures("--obj --end 0.05 --checkpoint-every 0 --quiet --threads 1", 600);
+}
+
+}  // namespace failing_calls_test
