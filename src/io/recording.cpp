@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include <pliant/body/advance.h>
 #include <pliant/body/dynamics.h>
 #include <pliant/io/format/number_text.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
 #include <pliant/method/step_path.h>
@@ -44,10 +44,11 @@ void compare_columns(const nlohmann::json& layout, const char* table, int count,
 }
 
 void compare_layout(const std::filesystem::path& file, const Model& model) {
-  std::ifstream stream(file);
-  if (!stream) throw RecordingMismatch("there is no recording: cannot read " + file.string());
+  if (!std::filesystem::exists(file))
+    throw RecordingMismatch("there is no recording: " + file.string() + " is missing");
+  const std::string text = read_whole_file(file);
   try {
-    const nlohmann::json layout = nlohmann::json::parse(stream);
+    const nlohmann::json layout = nlohmann::json::parse(text);
     if (layout.at("version") != kRecordingVersion)
       throw RecordingMismatch(file.string() + " has version " + layout.at("version").dump() + ", expected " +
                               std::to_string(kRecordingVersion));

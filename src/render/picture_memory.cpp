@@ -1,7 +1,6 @@
 // The memory for a picture, and the limits of this process.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <limits>
@@ -20,18 +19,22 @@ namespace {
 /// Memory for a pixel, bytes: four samples of colour and depth in GL, the same samples of colour read from
 /// GL, the image, and its PNG file in the worst case.
 constexpr double kBytesPerPixel = 16 + 16 + 16 + 3 + 3;
-/// Memory for a GL library with its compiler and its depth maps, bytes.
-constexpr double kBytesOfLibrary = 300e6;
+/// Memory for a GL library with its compiler and its depth maps, bytes, and the addresses that it reserves.
+constexpr double kBytesOfLibrary = 150e6, kAddressesOfLibrary = 650e6;
 
-/// An amount of memory that this process can still get, and what limits it.
-struct Limit {
-  double bytes = std::numeric_limits<double>::infinity();
-  const char* what = "";
-
-  void keep_smaller(double other, const char* what_other) {
-    if (other < bytes) *this = {std::max(0.0, other), what_other};
-  }
-};
+/// Throws OutOfMemory if a picture needs more than this process can have. needed, available: bytes. limit:
+/// what limits the memory.
+void require(const std::string& picture, double needed, double available, const char* limit) {
+  if (needed <= available) return;
+  auto gigabytes = [](double bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f GB", bytes / 1e9);
+    return std::string(text);
+  };
+  throw OutOfMemory(picture + " needs about " + gigabytes(needed) + " of memory, and this process can have " +
+                    gigabytes(std::max(0.0, available)) + " (" + limit +
+                    "); choose a smaller size with --size");
+}
 
 /// Returns the number after a word in a file of lines "WORD NUMBER ...", or infinity.
 double number_after(const std::string& file, const std::string& word) {
@@ -45,55 +48,45 @@ double number_after(const std::string& file, const std::string& word) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Limits the memory by that of the control group of this process, in version 2 of the control groups.
-void limit_by_group(Limit& limit) {
+/// Returns the memory that the control group of this process allows, in version 2 of the control groups,
+/// bytes; infinity without a limit.
+double memory_of_group() {
+  double available = std::numeric_limits<double>::infinity();
   std::ifstream groups("/proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
     if (line.compare(0, 3, "0::") != 0) continue;
     const std::string folder = "/sys/fs/cgroup" + line.substr(3);
     double most = 0;
     const double used = number_after(folder + "/memory.stat", "anon");
-    if (std::ifstream(folder + "/memory.max") >> most && std::isfinite(used))
-      limit.keep_smaller(most - used, "the limit of its control group");
+    if (std::isfinite(used) && std::ifstream(folder + "/memory.max") >> most) available = most - used;
   }
+  return available;
 }
 
-Limit available_memory() {
-  Limit limit;
-  const double kilobyte = 1024;
-  const double free_memory = number_after("/proc/meminfo", "MemAvailable:");
-  if (std::isfinite(free_memory))
-    limit.keep_smaller(kilobyte * (free_memory + number_after("/proc/meminfo", "SwapFree:")),
-                       "the free memory of this machine");
-  double pages = 0, skipped = 0, data_pages = 0;
-  std::ifstream("/proc/self/statm") >> pages >> skipped >> skipped >> skipped >> skipped >> data_pages;
-  const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+/// Returns a limit of this process, bytes; infinity if there is none.
+template <class Resource>
+double limit_of(Resource resource) {
   rlimit most{};
-  if (::getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY)
-    limit.keep_smaller(static_cast<double>(most.rlim_cur) - page * pages,
-                       "the limit of its address space, ulimit -v");
-  if (::getrlimit(RLIMIT_DATA, &most) == 0 && most.rlim_cur != RLIM_INFINITY)
-    limit.keep_smaller(static_cast<double>(most.rlim_cur) - page * data_pages,
-                       "the limit of its data, ulimit -d");
-  limit_by_group(limit);
-  return limit;
-}
-
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f GB", bytes / 1e9);
-  return text;
+  const bool limited = ::getrlimit(resource, &most) == 0 && most.rlim_cur != RLIM_INFINITY;
+  return limited ? static_cast<double>(most.rlim_cur) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
 void require_picture_memory(int width, int height) {
-  const double needed = kBytesOfLibrary + kBytesPerPixel * width * height;
-  const Limit limit = available_memory();
-  if (needed <= limit.bytes) return;
-  throw OutOfMemory("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
-                    " pixels needs about " + gigabytes(needed) + " of memory, and this process can have " +
-                    gigabytes(limit.bytes) + " (" + limit.what + "); choose a smaller size with --size");
+  const std::string picture =
+      "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels";
+  const double pixels = kBytesPerPixel * width * height, needed = kBytesOfLibrary + pixels;
+  const double kilobytes = number_after("/proc/meminfo", "MemAvailable:") +
+                           std::min(number_after("/proc/meminfo", "SwapFree:"), 1e15);
+  require(picture, needed, 1024 * kilobytes, "the free memory of this machine");
+  require(picture, needed, memory_of_group(), "the limit of its control group");
+  double pages = 0, skipped = 0, data_pages = 0;
+  std::ifstream("/proc/self/statm") >> pages >> skipped >> skipped >> skipped >> skipped >> data_pages;
+  const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+  require(picture, needed, limit_of(RLIMIT_DATA) - page * data_pages, "the limit of its data, ulimit -d");
+  require(picture, kAddressesOfLibrary + pixels, limit_of(RLIMIT_AS) - page * pages,
+          "the limit of its address space, ulimit -v");
 }
 
 }  // namespace pliant

@@ -20,9 +20,7 @@ int checked_side(int side, const char* name) {
 class Renderer::Impl {
  public:
   Impl(int w, int h, GlBackend backend)
-      : width(checked_side(w, "width")),
-        height(checked_side(h, "height")),
-        context((require_picture_memory(w, h), backend)) {
+      : width(checked_side(w, "width")), height(checked_side(h, "height")), context(backend) {
     const GlContext::Current current(context);
     pipeline = std::make_unique<Pipeline>(context, width, height);
   }

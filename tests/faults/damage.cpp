@@ -39,7 +39,7 @@ void copy_run(const FaultyRun& place) {
 }  // namespace
 
 TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume does not pass it on") {
-  const FaultyRun place("--obj --end 0.1 --quiet");
+  const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   REQUIRE(verify(place, "whole") == 0);
@@ -59,7 +59,7 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
       INFO(name << ", byte " << byte << " of " << size);
       CHECK(verify(place, "damaged") == 10);
       CHECK(has(place.output(), "damaged/" + name));
-      const int code = place.run("damaged", "--resume");
+      const int code = place.resume("damaged");
       INFO(place.output());
       if (table || name == "run.json") {
         CHECK(code == 10);
@@ -74,7 +74,7 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
 }
 
 TEST_CASE("I55: verify finds flipped bits in pictures") {
-  const FaultyRun place("--png --end 0.01 --quiet");
+  const FaultyRun place("--end 0.01", "--png --quiet");
   REQUIRE(place.run("whole") == 0);
   REQUIRE(verify(place, "whole") == 0);
   CHECK(has(place.output(), "checked: 2 frames in whole/frames"));
@@ -90,7 +90,7 @@ TEST_CASE("I55: verify finds flipped bits in pictures") {
 }
 
 TEST_CASE("I55: verify reports frames and tables that are missing or cut") {
-  const FaultyRun place("--obj --end 0.1 --quiet");
+  const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   for (const std::string name : {"contacts.npy", "supports.npy", "q.npy", "checksums.npy", "t.npy"}) {
@@ -98,7 +98,7 @@ TEST_CASE("I55: verify reports frames and tables that are missing or cut") {
     INFO(name);
     fs::resize_file(place / ("damaged/" + name), fs::file_size(place / ("whole/" + name)) - 1);
     CHECK(verify(place, "damaged") == 10);
-    CHECK(place.run("damaged", "--resume") == 0);  // the lost states are simulated again
+    CHECK(place.resume("damaged") == 0);  // the lost states are simulated again
     CHECK(difference(place.files("damaged"), whole) == "");
     fs::remove(place / ("damaged/" + name));
     CHECK(verify(place, "damaged") == 10);
@@ -112,7 +112,7 @@ TEST_CASE("I55: verify reports frames and tables that are missing or cut") {
 }
 
 TEST_CASE("two runs have equal trajectory hashes in run.json if and only if their motion is the same") {
-  const FaultyRun place("--end 0.1 --quiet");
+  const FaultyRun place("--end 0.1");
   REQUIRE(place.run("one") == 0);
   REQUIRE(place.run("other", "--threads 1") == 0);
   REQUIRE(place.run("heavy", "--set /parts/0/density=2000") == 0);
@@ -126,7 +126,7 @@ TEST_CASE("two runs have equal trajectory hashes in run.json if and only if thei
 }
 
 TEST_CASE("a damaged checkpoint is told, and the run continues from an earlier state to the same files") {
-  const FaultyRun place("--checkpoint-every 0 --set /output/frame_rate=4 --quiet");
+  const FaultyRun place("--set /output/frame_rate=4", "--checkpoint-every 0 --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   if (!can_trace()) {
@@ -145,7 +145,7 @@ TEST_CASE("a damaged checkpoint is told, and the run continues from an earlier s
                 .code == 128 + SIGKILL);
     for (const char which : damaged)
       flip_bit(place / (std::string("r/checkpoint_") + which + ".npy"), kNpyHeader + 40, 3);
-    REQUIRE(place.run("r", "--resume") == 0);
+    REQUIRE(place.resume("r") == 0);
     INFO("damaged: " << damaged << "\n" << place.output());
     CHECK(difference(place.files("r"), whole) == "");
     const std::string record = bytes_of(place / "r/run.json");

@@ -62,29 +62,51 @@ std::string fail_and_resume(const FaultyRun& place, long call, int error,
   if (ended.code == 7 && !has(told, "pliant: error: ")) return "no message: " + told;
   const bool locks = error == ENOLCK || error == EOPNOTSUPP;
   if (locks && !has(told, "does not lock files")) return "the lock is not named: " + told;
-  const int code = place.run("broken", fs::exists(place / "broken") ? "--resume" : "");
+  const int code = place.resume("broken");
   if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + place.output();
+  return difference(place.files("broken"), unbroken) + place.left_beside("broken");
+}
+
+/// Kills a run in its middle, and lets one call fail while it is resumed. Returns what is wrong.
+std::string fail_while_resumed(const FaultyRun& place, const fs::path& killed, long call, int error,
+                               const std::map<std::string, std::string>& unbroken) {
+  fs::remove_all(place / "broken");
+  fs::copy(killed, place / "broken", fs::copy_options::recursive);
+  const Ended ended = place.traced("broken", "--resume", [&](const Call& now) {
+    return Action{false, now.number == call ? error : 0};
+  });
+  const std::string told = place.output();
+  if (error == EINTR && ended.code != 0) return "not repeated: " + told;
+  if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
+  const int code = place.resume("broken");
+  if (code != 0) return "the run resumed again ended with " + std::to_string(code) + ": " + place.output();
   return difference(place.files("broken"), unbroken);
 }
 
-/// Lets about `count` of the calls on files of a run fail, each in one run.
-void check_failures(const std::string& options, std::size_t count) {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
-  const FaultyRun place(options);
-  REQUIRE(place.run("unbroken") == 0);
-  const auto unbroken = place.files("unbroken");
+/// Returns calls on files of a run, each with an error that it can report.
+std::vector<std::pair<long, int>> possible_faults(const FaultyRun& place, const std::string& more) {
   std::vector<std::pair<long, int>> faults;
   place.traced(
-      "broken", "",
+      "broken", more,
       [&](const Call& call) {
         if (has(call.path, "broken"))
           for (const int error : errors_of(call.what)) faults.emplace_back(call.number, error);
         return Action{};
       },
       true);
+  return faults;
+}
+
+/// Lets about `count` of the calls on files of a run fail, each in one run.
+void check_failures(const std::string& options, const std::string& outputs, std::size_t count) {
+  if (!can_trace()) {
+    WARN("skipped: this system does not let a process trace its children");
+    return;
+  }
+  const FaultyRun place(options, outputs);
+  REQUIRE(place.run("unbroken") == 0);
+  const auto unbroken = place.files("unbroken");
+  const std::vector<std::pair<long, int>> faults = possible_faults(place, "");
   REQUIRE(faults.size() > 100);
   const std::size_t stride = std::max<std::size_t>(1, faults.size() / count);
   for (std::size_t i = 0; i < faults.size(); i += stride) {
@@ -96,10 +118,30 @@ void check_failures(const std::string& options, std::size_t count) {
 }  // namespace
 
 TEST_CASE("I51: a call on a file that fails ends the run with code 7, and the run can be resumed") {
-  check_failures("--obj --end 0.02 --quiet --threads 1", 40);
+  check_failures("--end 0.02 --threads 1", "--obj --quiet", 40);
+}
+TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run can be resumed again") {
+  if (!can_trace()) {
+    WARN("skipped: this system does not let a process trace its children");
+    return;
+  }
+  const FaultyRun place("--end 0.04", "--checkpoint-every 0 --quiet");
+  REQUIRE(place.run("unbroken") == 0);
+  const auto unbroken = place.files("unbroken");
+  const long calls = place.traced("killed", "", [](const Call&) { return Action{}; }).calls;
+  fs::remove_all(place / "killed");
+  place.traced("killed", "", [&](const Call& now) { return Action{now.number == calls * 3 / 4, 0}; });
+  REQUIRE(fs::exists(place / "killed/checkpoint_2.npy"));
+  fs::copy(place / "killed", place / "broken", fs::copy_options::recursive);
+  const std::vector<std::pair<long, int>> faults = possible_faults(place, "--resume");
+  REQUIRE(faults.size() > 60);
+  for (std::size_t i = 0; i < faults.size(); i += faults.size() / 40) {
+    INFO("call " << faults[i].first << " failed with error " << faults[i].second);
+    CHECK(fail_while_resumed(place, place / "killed", faults[i].first, faults[i].second, unbroken) == "");
+  }
 }
 TEST_CASE("I51: each of 600 calls on files may fail, and the run can be resumed", "[long]") {
-  check_failures("--obj --end 0.05 --checkpoint-every 0 --quiet --threads 1", 600);
+  check_failures("--end 0.05 --threads 1", "--obj --checkpoint-every 0 --quiet", 600);
 }
 
 }  // namespace failing_calls_test

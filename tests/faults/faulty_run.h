@@ -39,25 +39,29 @@ inline const char* const kBounce = R"({
 /// A folder with a scene, in which the program runs.
 class FaultyRun {
  public:
-  /// options: of `pliant run`, without those that resume or replace a run.
-  explicit FaultyRun(std::string options) : options_(std::move(options)) {
+  /// options: of `pliant run`, without those that resume or replace a run. outputs: those that a resumed run
+  /// needs again.
+  explicit FaultyRun(std::string options, std::string outputs = "--quiet")
+      : options_(std::move(options)), outputs_(std::move(outputs)) {
     set_bytes(folder_ / "bounce.json", kBounce);
   }
 
   /// Runs the program to the end in the folder `run`, with more options. before: text of the shell command in
   /// front of the program. Returns the exit code.
   int run(const std::string& run, const std::string& more = "", const std::string& before = "") const {
-    const std::string line = "cd '" + folder_.path.string() + "' && " + before +
-                             " '" PLIANT_PROGRAM "' run bounce.json " + options_ + " -o " + run + " " + more +
-                             " > .out 2>&1";
-    const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return program("-o " + run + " " + options_ + " " + outputs_ + " " + more, before);
+  }
+  /// Resumes a run without repeating its options, or runs it again if there is no folder of the run. Returns
+  /// the exit code.
+  int resume(const std::string& run) const {
+    return fs::exists(folder_ / run) ? program("-o " + run + " " + outputs_ + " --resume", "")
+                                     : this->run(run);
   }
   /// Runs the program under ptrace, see run_traced(). Its output is that of the last command.
   Ended traced(const std::string& run, const std::string& more,
                const std::function<Action(const Call&)>& at_call, bool with_paths = false) const {
     std::vector<std::string> words{PLIANT_PROGRAM, "run", "bounce.json", "-o", run};
-    std::istringstream options(options_ + " " + more);
+    std::istringstream options(options_ + " " + outputs_ + " " + more);
     for (std::string word; options >> word;) words.push_back(word);
     return run_traced(words, folder_.path.string(), (folder_ / ".out").string(), with_paths, at_call);
   }
@@ -65,6 +69,13 @@ class FaultyRun {
   std::string output() const { return bytes_of(folder_ / ".out"); }
   fs::path operator/(const std::string& name) const { return folder_ / name; }
 
+  /// Returns the name of a folder beside that of a run that a killed process has left; empty if there is
+  /// none.
+  std::string left_beside(const std::string& run) const {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path))
+      if (entry.path().filename().string().rfind(run + ".part-", 0) == 0) return entry.path().string();
+    return {};
+  }
   /// Returns the names of all files of a run, with their bytes; without bytes for run.json, which contains
   /// times.
   std::map<std::string, std::string> files(const std::string& run) const {
@@ -77,8 +88,15 @@ class FaultyRun {
   }
 
  private:
+  int program(const std::string& arguments, const std::string& before) const {
+    const std::string line = "cd '" + folder_.path.string() + "' && " + before +
+                             " '" PLIANT_PROGRAM "' run bounce.json " + arguments + " > .out 2>&1";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
   NewFolder folder_;
-  std::string options_;
+  std::string options_, outputs_;
 };
 
 /// Returns what differs between the files of two runs, for the message of a test; empty if nothing differs.

@@ -11,23 +11,16 @@ using namespace faults;
 namespace {
 
 /// Breaks a run at a call and resumes it. The result is a text on what is wrong; empty if all is right.
-std::string kill_and_resume(const FaultyRun& place, const std::string& options_to_repeat, long call,
+std::string kill_and_resume(const FaultyRun& place, long call,
                             const std::map<std::string, std::string>& unbroken) {
   fs::remove_all(place / "broken");
   const Ended ended = place.traced("broken", "", [call](const Call& now) {
     return Action{now.number == call, 0};
   });
   if (ended.code != 128 + SIGKILL) return ended.code == 0 ? "" : "the run ended with an error";
-  std::string again = " --resume";
-  const fs::path folder = place / "broken";
-  if (!fs::exists(folder))
-    again = options_to_repeat;  // there is nothing to resume
-  else if (!fs::exists(folder / "run.json") && !fs::exists(folder / "new_run.whole") &&
-           !fs::exists(folder / "new_run.moving"))
-    again += options_to_repeat;  // the options were not recorded
-  const int code = place.run("broken", again);
+  const int code = place.resume("broken");
   if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + place.output();
-  return difference(place.files("broken"), unbroken);
+  return difference(place.files("broken"), unbroken) + place.left_beside("broken");
 }
 
 /// Returns the calls at which to kill: `early` of them spread over the first 600, `late` over the others.
@@ -39,12 +32,11 @@ std::vector<long> calls_to_kill(long all, long early, long late) {
   return calls;
 }
 
-void check_kills(const std::string& options, long early, long late) {
+void check_kills(const FaultyRun& place, long early, long late) {
   if (!can_trace()) {
     WARN("skipped: this system does not let a process trace its children");
     return;
   }
-  const FaultyRun place(options);
   REQUIRE(place.run("unbroken") == 0);
   const auto unbroken = place.files("unbroken");
   const Ended whole = place.traced("broken", "", [](const Call&) { return Action{}; });
@@ -52,24 +44,24 @@ void check_kills(const std::string& options, long early, long late) {
   CHECK(difference(place.files("broken"), unbroken).empty());
   for (const long call : calls_to_kill(whole.calls, early, late)) {
     INFO("killed at call " << call << " of about " << whole.calls);
-    CHECK(kill_and_resume(place, "", call, unbroken) == "");
+    CHECK(kill_and_resume(place, call, unbroken) == "");
   }
 }
 
 }  // namespace
 
 TEST_CASE("I53: a run that is killed at any system call is resumed to the same files") {
-  check_kills("--threads 2 --obj --set /parts/0/density=500 --quiet", 12, 24);
+  check_kills(FaultyRun("--threads 2 --set /parts/0/density=500 --fps 50", "--obj --quiet"), 12, 24);
 }
 TEST_CASE("I53: a run with a checkpoint after each step is resumed to the same files") {
-  check_kills("--threads 2 --end 0.04 --checkpoint-every 0 --quiet", 6, 18);
+  check_kills(FaultyRun("--end 0.04", "--checkpoint-every 0 --quiet"), 6, 18);
 }
 TEST_CASE("I53: a run that draws pictures is resumed to the same files") {
-  check_kills("--threads 2 --end 0.03 --png --quiet", 4, 8);
+  check_kills(FaultyRun("--end 0.03 --size 40x30", "--png --quiet"), 4, 8);
 }
 TEST_CASE("I53: a run is resumed to the same files from each of 600 early and 500 late system calls",
           "[long]") {
-  check_kills("--threads 2 --obj --set /parts/0/density=500 --tolerance 1e-5 --integrator auto --quiet", 600,
+  check_kills(FaultyRun("--threads 2 --set /parts/0/density=500 --tolerance 1e-5", "--obj --quiet"), 600,
               500);
 }
 
@@ -78,8 +70,8 @@ TEST_CASE("I53: a run with --force that is killed leaves the old run whole, or c
     WARN("skipped: this system does not let a process trace its children");
     return;
   }
-  const FaultyRun place("--end 0.05 --quiet");
-  const std::string replace = "--force --set /parts/0/density=500";
+  const FaultyRun place("--end 0.05");
+  const std::string replace_options = "--set /parts/0/density=500", replace = "--force " + replace_options;
   REQUIRE(place.run("old", "--obj") == 0);
   REQUIRE(place.run("new", replace) == 0);
   const auto old_files = place.files("old"), new_files = place.files("new");
@@ -108,7 +100,7 @@ TEST_CASE("I53: a run with --force that is killed leaves the old run whole, or c
     const bool begun = fs::exists(folder / "new_run.whole") || fs::exists(folder / "new_run.moving") ||
                        !fs::exists(folder / "meshes");
     if (!begun) ++kept;
-    CHECK(place.run("broken", begun ? "--resume" : "--resume --obj") == 0);
+    CHECK(place.run("broken", begun ? replace_options + " --resume" : "--resume --obj") == 0);
     CHECK(difference(place.files("broken"), begun ? new_files : old_files) == "");
   }
   CHECK(kept > 5);

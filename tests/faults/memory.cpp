@@ -23,7 +23,7 @@ int run_without_memory(const FaultyRun& place, const std::string& run, long from
 }
 
 void check_exhaustion(const std::string& options, long points) {
-  const FaultyRun place(options);
+  const FaultyRun place(options, "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   REQUIRE(run_without_memory(place, "r", 1L << 60) == 0);
@@ -36,7 +36,7 @@ void check_exhaustion(const std::string& options, long points) {
     const int code = run_without_memory(place, "r", from);
     CHECK(code == 8);
     CHECK(has(place.output(), "out of memory"));
-    CHECK(place.run("r", fs::exists(place / "r") ? "--resume" : "") == 0);
+    CHECK(place.resume("r") == 0);
     CHECK(difference(place.files("r"), whole) == "");
   }
 }
@@ -44,20 +44,21 @@ void check_exhaustion(const std::string& options, long points) {
 }  // namespace
 
 TEST_CASE("out of memory, at any allocation: code 8, and the folder stays usable") {
-  check_exhaustion("--obj --end 0.05 --threads 2 --quiet", 60);
+  check_exhaustion("--end 0.05 --threads 2", 40);
 }
 TEST_CASE("out of memory, at any of many allocations of a long run: code 8", "[long]") {
-  check_exhaustion("--obj --threads 2 --tolerance 1e-5 --integrator auto --quiet", 600);
+  check_exhaustion("--threads 2 --tolerance 1e-5", 600);
 }
 TEST_CASE("a picture that needs more memory than the process can have is refused before the simulation") {
-  const FaultyRun place("--png --size 8192x8192");
-  CHECK(place.run("r", "", "ulimit -v 3500000;") == 8);
-  CHECK(has(place.output(), "a picture of 8192 x 8192 pixels needs about 3.92 GB of memory"));
+  const FaultyRun place("", "--png");
+  CHECK(place.run("r", "--size 8192x8192", "ulimit -v 3500000;") == 8);
+  CHECK(has(place.output(), "a picture of 8192 x 8192 pixels needs about 4.27 GB of memory"));
   CHECK(has(place.output(), "the limit of its address space, ulimit -v"));
   CHECK_FALSE(fs::exists(place / "r"));
+  CHECK(place.run("r", "--end 0 --size 64x48", "ulimit -v 3500000;") == 0);
 }
 TEST_CASE("a system that refuses threads gives the same files with fewer threads") {
-  const FaultyRun place("--end 0.05 --quiet");
+  const FaultyRun place("--end 0.05");
   REQUIRE(place.run("whole") == 0);
   // The stack of a thread is larger than the address space.
   REQUIRE(place.run("r", "--threads 3", "ulimit -s 4000000; ulimit -v 2000000;") == 0);

@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// Throws OutOfMemory, with the needed memory and the limit, if this process cannot have the memory that
-/// drawing a picture of this size needs. width, height: pixels.
+/// drawing a picture of this size needs. To be called before a GL library is loaded. width, height: pixels.
 void require_picture_memory(int width, int height);
 
 /// Keeps its GL buffers between frames: if a body has the same triangles as in the previous frame, only its
@@ -23,7 +23,7 @@ class Renderer {
 
   /// Opens a GL library. No GL library is loaded before the first renderer or context is constructed, or
   /// probe_gl_backends() is called. width, height: pixels. Throws std::invalid_argument unless both are in
-  /// [1, kMaxSide], what require_picture_memory() throws, and std::runtime_error if no backend opens or none
+  /// [1, kMaxSide], and std::runtime_error if no backend opens or none
   /// can draw a picture of this size.
   Renderer(int width, int height, GlBackend backend = GlBackend::automatic);
   ~Renderer();

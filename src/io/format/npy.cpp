@@ -17,7 +17,7 @@
 
 #include <pliant/io/file_fault.h>
 
-#include "../retry.h"
+#include <pliant/io/retry.h>
 
 namespace pliant {
 namespace {

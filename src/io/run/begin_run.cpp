@@ -39,10 +39,6 @@ void Run::set_identity() {
   record_.frame_rate = scene_->frame_rate;
   record_.integrator = simulation_->integrator().name();
   record_.requested_integrator = scene_->integrator;
-  if (schedule_.step() != record_.requested_step) {
-    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
-         number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
-  }
 }
 
 /// Adds a finished file and its checksum to the run record.
@@ -95,7 +91,10 @@ void Run::open_tables(std::int64_t states) {
 }
 
 void Run::begin_recording(const StableStep& stable) {
-  set_identity();
+  if (schedule_.step() != record_.requested_step) {
+    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
+         number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
+  }
   describe(stable);
   const std::filesystem::path place = folder_->new_run();
   record_.add_file(kRunFile);

@@ -75,7 +75,11 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   simulation_ = prepare(scene, options_.threads);
   const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
-  folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
+  set_identity();
+  set_options();
+  folder_ = std::make_unique<RunFolder>(
+      options_.folder, options_.existing, source,
+      [this](const std::filesystem::path& file) { write_run_record(file, record_); });
   if (!folder_->note().empty()) note(folder_->note());
   if (options_.existing == Existing::resume && folder_->has_run())
     resume_recording(stable);
@@ -86,8 +90,8 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
 
 Run::~Run() = default;
 
-/// Sets the options of this session in the run record, and adds notes on them.
-void Run::describe(const StableStep& stable) {
+/// Sets the options of this session in the run record.
+void Run::set_options() {
   const Scene& scene = *scene_;
   record_.status = RunRecord::Status::running;
   record_.message.clear();
@@ -101,6 +105,12 @@ void Run::describe(const StableStep& stable) {
   record_.width = scene.width;
   record_.height = scene.height;
   record_.steps = schedule_.steps();
+}
+
+/// Sets the options of this session and the properties of the model in the run record, and adds notes on
+/// them.
+void Run::describe(const StableStep& stable) {
+  set_options();
   record_.stable_step = stable.step;
   record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());

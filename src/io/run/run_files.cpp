@@ -48,7 +48,8 @@ std::string frame_name(const std::string& stem, std::int64_t number, const std::
 }
 
 bool is_run_file(const std::filesystem::path& relative) {
-  static constexpr std::array<const char*, 18> top{kRunFile,
+  static constexpr std::array<const char*, 19> top{kNewRunFile,
+                                                   kRunFile,
                                                    kSceneFile,
                                                    kLayoutFile,
                                                    kTimesFile,

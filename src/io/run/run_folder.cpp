@@ -1,5 +1,6 @@
 #include <pliant/io/run/run_folder.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <string>
@@ -14,9 +15,8 @@
 
 #include <pliant/io/file_fault.h>
 #include <pliant/io/format/whole_file.h>
+#include <pliant/io/retry.h>
 #include <pliant/io/run/run_files.h>
-
-#include "../retry.h"
 
 namespace fs = std::filesystem;
 
@@ -41,21 +41,53 @@ bool is_in(const fs::path& file, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-/// Returns whether a name in the folder of a run is that of an unfinished file or of the lock: it contains
-/// nothing that a run needs.
-bool is_leftover(const fs::path& name) {
+/// Returns whether a name is that of an unfinished file or folder of a run.
+bool is_unfinished(const fs::path& name) {
   const std::string text = name.string(), finished = finished_name(text);
-  return text == kLockFile || (finished != text && (finished == kNewRun || is_run_file(finished)));
+  return finished != text && (finished == kNewRun || is_run_file(finished));
+}
+
+/// Returns whether a name in the folder of a run is that of a file that remains if the run is killed before
+/// it has begun.
+bool is_leftover(const fs::path& name) {
+  return name == kLockFile || name == kNewRunFile || is_unfinished(name);
 }
 
 bool process_exists(int process) {
   return ::kill(process, 0) == 0 || errno != ESRCH;
 }
 
-/// Returns whether a folder has been created by this call and not before.
-bool create_folder(const fs::path& folder) {
-  if (folder.has_parent_path()) fs::create_directories(folder.parent_path());
-  return fs::create_directory(folder);
+/// Returns the path of run.json of the run that has begun in a folder; empty if there is none.
+fs::path begun_run_file(const fs::path& folder) {
+  for (const char* place : {kWholeNewRun, kMovingNewRun, "."}) {
+    const fs::path file = (folder / place / kRunFile).lexically_normal();
+    if (exists_at_all(file)) return file;
+  }
+  return {};
+}
+
+/// Creates a folder with the name of an unfinished one, "NAME.part-PID-N", and returns its path.
+fs::path create_unfinished(const fs::path& name) {
+  for (int attempt = 0;; ++attempt) {
+    const fs::path path =
+        name.string() + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
+    if (fs::create_directory(path)) return path;
+  }
+}
+
+/// Removes the folders "NAME.part-PID-N" of new runs whose processes no longer exist. folder: path of NAME.
+void remove_unfinished_folders(const fs::path& folder) {
+  std::vector<fs::path> unfinished;
+  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent)) {
+    const std::string name = entry.path().filename().string();
+    const int process = writing_process(name);
+    if (process < 0 || finished_name(name) != folder.filename() || process_exists(process)) continue;
+    if (!fs::is_directory(entry.symlink_status())) continue;
+    const std::vector<fs::path> files = files_of(entry.path());
+    if (std::all_of(files.begin(), files.end(), is_run_file)) unfinished.push_back(entry.path());
+  }
+  for (const fs::path& path : unfinished) fs::remove_all(path);
 }
 
 }  // namespace
@@ -87,6 +119,8 @@ class RunFolder::Lock {
       throw_file_fault(error, "write", path_, owner.size());
     }
   }
+  /// Sets the path of the lock file after its folder has been renamed.
+  void moved_to(const fs::path& folder) { path_ = folder / kLockFile; }
   ~Lock() {
     ::unlink(path_.c_str());
     ::close(descriptor_);
@@ -120,7 +154,9 @@ class RunFolder::Lock {
   int descriptor_ = -1;
 };
 
-RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene,
+                     const WriteOptions& write_options)
+    : folder_(std::move(folder)) {
   if (folder_.filename().empty() && folder_.has_parent_path())
     folder_ = folder_.parent_path();  // "out/" is "out"
   const fs::file_status status = fs::symlink_status(folder_);
@@ -129,21 +165,42 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
                         " is a symbolic link; give the path of its target");
   if (fs::exists(status) && !fs::is_directory(status))
     throw OutputRefused("the output folder " + folder_.string() + " is a file");
-  bool leftovers = false;
-  if (fs::exists(status)) {
-    leftovers = refuse_unless_allowed(existing, scene);
-  } else {
+  if (!fs::exists(status)) {
     if (existing == Existing::resume)
       throw OutputRefused("there is no run to resume: the folder " + folder_.string() + " does not exist");
-    created_ = create_folder(folder_);
+    create(write_options);
+    return;
   }
+  const bool leftovers = refuse_unless_allowed(existing, scene);
   lock_ = std::make_unique<Lock>(folder_);
   refuse_unless_allowed(existing, scene);  // again: a run may have begun and ended before the lock
   remove_unfinished_files();
   complete_beginning();
-  if (existing == Existing::resume ? !has_run() : leftovers)
-    note_ = "no run had begun in " + folder_.string() +
-            "; the run starts at time 0, with the options of this command";
+  if (has_run() && existing == Existing::resume) return;
+  if (write_options) write_options(folder_ / kNewRunFile);
+  if (existing == Existing::resume || leftovers)
+    note_ = "no run had begun in " + folder_.string() + "; the run starts at time 0";
+}
+
+/// Creates the folder, with the lock and the options.
+void RunFolder::create(const WriteOptions& write_options) {
+  if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path());
+  remove_unfinished_folders(folder_);
+  const fs::path unfinished = create_unfinished(folder_);
+  try {
+    lock_ = std::make_unique<Lock>(unfinished);
+    if (write_options) write_options(unfinished / kNewRunFile);
+    std::error_code error;
+    fs::rename(unfinished, folder_, error);
+    if (error == std::errc::directory_not_empty || error == std::errc::file_exists)
+      throw OutputRefused("another process has created the output folder " + folder_.string());
+    if (error) throw fs::filesystem_error("cannot rename", unfinished, folder_, error);
+    lock_->moved_to(folder_);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
+    throw;
+  }
 }
 
 /// Throws OutputRefused unless the folder is empty, contains only leftovers of killed processes, or contains
@@ -157,7 +214,7 @@ bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) 
       others = true;
   }
   if (!others) return leftovers;
-  const bool ours = !find_run_file(folder_).empty();
+  const bool ours = !begun_run_file(folder_).empty();
   if (existing == Existing::refuse)
     throw OutputRefused("the output folder " + folder_.string() + " is not empty; " +
                         (ours ? "--resume continues the run in it, --force replaces it by a new run"
@@ -177,8 +234,7 @@ bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) 
 void RunFolder::remove_unfinished_files() {
   std::vector<fs::path> unfinished;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-    if (entry.path().filename() != kLockFile && is_leftover(entry.path().filename()))
-      unfinished.push_back(entry.path());
+    if (is_unfinished(entry.path().filename())) unfinished.push_back(entry.path());
   for (const char* inner : {kMeshFolder, kFrameFolder}) {
     if (!fs::is_directory(fs::symlink_status(folder_ / inner))) continue;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / inner)) {
@@ -196,11 +252,7 @@ bool RunFolder::has_run() const {
 }
 
 fs::path RunFolder::new_run() {
-  for (int attempt = 0; new_run_.empty(); ++attempt) {
-    const fs::path path = folder_ / (std::string(kNewRun) + ".part-" + std::to_string(::getpid()) + "-" +
-                                     std::to_string(attempt));
-    if (fs::create_directory(path)) new_run_ = path;
-  }
+  new_run_ = create_unfinished(folder_ / kNewRun);
   return new_run_;
 }
 
@@ -208,7 +260,6 @@ void RunFolder::begin_new_run() {
   sync_folder(new_run_);
   fs::rename(new_run_, folder_ / kWholeNewRun);
   new_run_.clear();
-  created_ = false;
   sync_folder(folder_);
   complete_beginning();
 }
@@ -220,11 +271,13 @@ void RunFolder::complete_beginning() {
     remove_old_run();
     fs::rename(whole, moving);
   }
+  if (exists_at_all(folder_ / kRunFile)) fs::remove(folder_ / kNewRunFile);
   if (!exists_at_all(moving)) return;
   for (const fs::path& file : files_of(moving))
     if (file != kRunFile) fs::rename(moving / file, folder_ / file);
   if (exists_at_all(moving / kRunFile)) fs::rename(moving / kRunFile, folder_ / kRunFile);
   fs::remove(moving);
+  fs::remove(folder_ / kNewRunFile);
 }
 
 /// Removes the files of the old run, run.json first: the others alone are not a run.
@@ -241,20 +294,17 @@ void RunFolder::remove_old_run() {
 RunFolder::~RunFolder() {
   try {
     if (!new_run_.empty()) fs::remove_all(new_run_);
-    lock_.reset();
-    if (created_) fs::remove(folder_);
   } catch (const std::exception&) {
     // The next run that locks the folder removes these files.
   }
 }
 
 fs::path find_run_file(const fs::path& folder) {
-  for (const char* place : {kWholeNewRun, kMovingNewRun}) {
-    const fs::path file = folder / place / kRunFile;
-    if (exists_at_all(file)) return file;
-  }
-  const fs::path file = folder / kRunFile;
-  return exists_at_all(file) || !fs::is_directory(folder) ? file : fs::path();
+  if (!fs::is_directory(folder)) return folder / kRunFile;
+  const fs::path begun = begun_run_file(folder);
+  if (!begun.empty()) return begun;
+  const fs::path options = folder / kNewRunFile;
+  return exists_at_all(options) ? options : fs::path();
 }
 
 void make_subfolder(const fs::path& folder) {

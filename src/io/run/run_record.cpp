@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -292,12 +290,16 @@ void read_checksums(const Json& checksums, RunRecord& r) {
 }  // namespace
 
 RunRecord read_run_record(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream)
-    throw FileError(FileError::Reason::kMissing,
-                    "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
+  std::string text;
   try {
-    const Json json = Json::parse(stream);
+    text = read_whole_file(file);
+  } catch (const std::system_error& fault) {
+    if (fault.code() != std::errc::no_such_file_or_directory && fault.code() != std::errc::not_a_directory)
+      throw;
+    throw FileError(FileError::Reason::kMissing, std::string("there is no run: ") + fault.what());
+  }
+  try {
+    const Json json = Json::parse(text);
     RunRecord r;
     const std::string status = json.at("status");
     const auto found = std::find(kStatus.begin(), kStatus.end(), status);

@@ -90,6 +90,7 @@ class Run {
   void check_numbers(const Recording& recorded, std::int64_t states) const;
   void set_last_state(const Recording& recorded, std::int64_t& keep);
   bool continue_from_checkpoint(const Recording& recorded, std::int64_t keep);
+  void set_options();
   void describe(const StableStep& stable);
   void note_setup(const StableStep& stable);
   void record_state();

@@ -35,6 +35,7 @@ inline constexpr const char* kMaterialFile = "parts.mtl";  ///< colours of meshe
 // The folder of a new run inside the folder of the run, see run_folder.h: kNewRun with the ending of an
 // unfinished file while its files are written, then kWholeNewRun, then kMovingNewRun.
 inline constexpr const char* kNewRun = "new_run";
+inline constexpr const char* kNewRunFile = "new_run.json";  ///< options of a run that has not begun
 inline constexpr const char* kWholeNewRun = "new_run.whole";
 inline constexpr const char* kMovingNewRun = "new_run.moving";
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -22,20 +23,28 @@ enum class Existing {
 
 /// A locked folder. During its lifetime a lock file with the process number excludes other runs.
 ///
-/// A run begins in one step. A new run writes its first files into a folder of its own, new_run.part-PID-N,
-/// inside the folder of the run. When all these files are whole, the folder is renamed to new_run.whole: from
-/// now on the folder contains the new run. Then the files of the old run are removed, new_run.whole is
-/// renamed to new_run.moving, its files are moved to the folder of the run, and it is removed. If the process
-/// is killed in between, the next one that locks the folder completes these steps. If it is killed before the
-/// first of them, the old run is as it was, and the next process removes new_run.part-PID-N.
+/// A folder that does not exist is prepared as NAME.part-PID-N, with the lock and the options of the run, and
+/// then renamed: a folder of a run always contains the options, so that a killed run can begin again.
+///
+/// A run begins in one step. Its first files are written in new_run.part-PID-N inside the folder. When all
+/// these files are whole, this inner folder is renamed to new_run.whole: from now on the folder contains the
+/// new run. Then the files of the old run are removed, new_run.whole is renamed to new_run.moving, its files
+/// are moved to the folder of the run, and it is removed. If the process is killed in between, the next one
+/// that locks the folder completes these steps. If it is killed before the first of them, an old run is as it
+/// was, and the next process removes the unfinished inner folder.
 class RunFolder {
  public:
-  /// Creates the folder and its parents, and locks it. Removes unfinished files of killed processes. scene:
-  /// path of the scene file, which must not be in a folder whose files will be replaced; may be empty. Throws
-  /// OutputRefused (not empty, a file, a symbolic link, in use, not a folder of a run), std::system_error.
-  RunFolder(std::filesystem::path folder, Existing existing, const std::filesystem::path& scene = {});
-  /// Removes the folder of a new run that has not begun, and the folder of the run if it was created and is
-  /// empty.
+  /// Writes the options of a new run to a file.
+  using WriteOptions = std::function<void(const std::filesystem::path&)>;
+
+  /// Creates the folder and its parents, if they do not exist, and locks it. Removes unfinished files of
+  /// killed processes. scene: path of the scene file, which must not be in a folder whose files will be
+  /// replaced; may be empty. write_options: called if a new run begins; may be empty. Throws OutputRefused
+  /// (not empty, a file, a symbolic link, in use, not a folder of a run), std::system_error, and what
+  /// write_options throws.
+  RunFolder(std::filesystem::path folder, Existing existing, const std::filesystem::path& scene = {},
+            const WriteOptions& write_options = {});
+  /// Removes the files of a new run that has not begun, except its options.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
@@ -56,19 +65,20 @@ class RunFolder {
   class Lock;
 
   bool refuse_unless_allowed(Existing existing, const std::filesystem::path& scene) const;
+  void create(const WriteOptions& write_options);
   void remove_unfinished_files();
   void complete_beginning();
   void remove_old_run();
 
   std::filesystem::path folder_, new_run_;
   std::string note_;
-  bool created_ = false;
   std::unique_ptr<Lock> lock_;
 };
 
 /// Returns the path of run.json of the run in a folder, also if the process was killed while the files of
-/// this run were moved to the folder. Returns an empty path if the folder exists and no run has begun in it.
-/// Does not lock the folder.
+/// this run were moved to the folder. If no run has begun in the folder, returns the path of the options with
+/// which one was to begin, or an empty path. If the folder does not exist, returns a path that does not exist
+/// either. Does not lock the folder.
 std::filesystem::path find_run_file(const std::filesystem::path& folder);
 
 /// Creates a folder inside the folder of a run. Throws OutputRefused if a file or a symbolic link has its
