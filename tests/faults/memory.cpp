@@ -22,8 +22,7 @@ int run_without_memory(const FaultyRun& place, const std::string& run, long from
                        std::to_string(from));
 }
 
-void check_exhaustion(const std::string& options, long points) {
-  const FaultyRun place(options, "--obj --quiet");
+void check_exhaustion(const FaultyRun& place, long points) {
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   REQUIRE(run_without_memory(place, "r", 1L << 60) == 0);
@@ -44,10 +43,13 @@ void check_exhaustion(const std::string& options, long points) {
 }  // namespace
 
 TEST_CASE("out of memory, at any allocation: code 8, and the folder stays usable") {
-  check_exhaustion("--end 0.05 --threads 2", 40);
+  check_exhaustion(FaultyRun("--end 0.05 --threads 2", "--obj --quiet"), 40);
+}
+TEST_CASE("out of memory in the graphics library: code 8, and the folder stays usable") {
+  check_exhaustion(FaultyRun("--end 0.02 --size 32x24", "--png --quiet"), 12);
 }
 TEST_CASE("out of memory, at any of many allocations of a long run: code 8", "[long]") {
-  check_exhaustion("--threads 2 --tolerance 1e-5", 600);
+  check_exhaustion(FaultyRun("--threads 2 --tolerance 1e-5", "--obj --quiet"), 600);
 }
 TEST_CASE("a picture that needs more memory than the process can have is refused before the simulation") {
   const FaultyRun place("", "--png");
