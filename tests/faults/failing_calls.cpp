@@ -120,6 +120,49 @@ void check_failures(const std::string& options, const std::string& outputs, std:
 TEST_CASE("I51: a call on a file that fails ends the run with code 7, and the run can be resumed") {
   check_failures("--end 0.02 --threads 1", "--obj --quiet", 40);
 }
+TEST_CASE(
+    "I51: if the disk is full, --force keeps the old run, or the new one has begun and can be resumed") {
+  if (!can_trace()) {
+    WARN("skipped: this system does not let a process trace its children");
+    return;
+  }
+  const FaultyRun place("--end 0.02");
+  const std::string replace = "--force --set /parts/0/density=500";
+  REQUIRE(place.run("old") == 0);
+  REQUIRE(place.run("new", replace) == 0);
+  const auto old_files = place.files("old"), new_files = place.files("new");
+  const auto restore = [&] {
+    fs::remove_all(place / "broken");
+    fs::copy(place / "old", place / "broken", fs::copy_options::recursive);
+  };
+  restore();
+  std::vector<long> full;  // calls that fail with ENOSPC
+  for (const auto& [call, error] : possible_faults(place, replace))
+    if (error == ENOSPC) full.push_back(call);
+  REQUIRE(full.size() > 40);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < full.size(); i += full.size() / 40) {
+    restore();
+    INFO("no space on the disk from call " << full[i] << " on");
+    const Ended ended = place.traced(
+        "broken", replace,
+        [&](const Call& now) {
+          const bool needs_space = now.what == SYS_write || now.what == SYS_pwrite64 ||
+                                   now.what == SYS_fsync || now.what == SYS_mkdir;
+          return Action{false, now.number >= full[i] && needs_space && has(now.path, "broken") ? ENOSPC : 0};
+        },
+        true);
+    INFO(place.output());
+    CHECK((ended.code == 7 || ended.code == 0));  // 0: the last calls need not succeed
+    if (difference(place.files("broken"), old_files).empty()) {
+      ++kept;
+      continue;
+    }
+    CHECK(place.resume("broken") == 0);
+    CHECK(difference(place.files("broken"), new_files) == "");
+  }
+  CHECK(kept > 5);
+}
 TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run can be resumed again") {
   if (!can_trace()) {
     WARN("skipped: this system does not let a process trace its children");

@@ -294,6 +294,7 @@ void RunFolder::remove_old_run() {
 RunFolder::~RunFolder() {
   try {
     if (!new_run_.empty()) fs::remove_all(new_run_);
+    if (has_run()) fs::remove(folder_ / kNewRunFile);
   } catch (const std::exception&) {
     // The next run that locks the folder removes these files.
   }

@@ -44,7 +44,7 @@ class RunFolder {
   /// write_options throws.
   RunFolder(std::filesystem::path folder, Existing existing, const std::filesystem::path& scene = {},
             const WriteOptions& write_options = {});
-  /// Removes the files of a new run that has not begun, except its options.
+  /// Removes the files of a new run that has not begun, except its options if there is no old run.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
