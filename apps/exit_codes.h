@@ -14,7 +14,7 @@ enum ExitCode {
   kFileSystem = 7,
   kResources = 8,
   kWouldOverwrite = 9,
-  kRecordingMismatch = 10,  // the recording does not match the scene or the program
+  kRecordingMismatch = 10,  // the recording does not match the scene or the program, or is damaged
   kSignal = 128,            // plus the number of the signal
 };
 
@@ -22,6 +22,7 @@ inline constexpr const char* kExitCodesHelp =
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 4 joints contradict each other,\n"
     "5 numerical failure, 6 energy balance worse than 1 % (--strict), 7 file system,\n"
     "8 resources (memory, graphics), 9 would overwrite files,\n"
-    "10 recording does not match the scene or program, 128 + N stopped by signal N (continue with --resume).";
+    "10 recording does not match the scene or program, or is damaged,\n"
+    "128 + N stopped by signal N (continue with --resume).";
 
 }  // namespace pliant_cli

@@ -3,6 +3,9 @@
 #include "failure.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -68,7 +71,26 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
   return text;
 }
 
+constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution or the number of parts";
+
+/// Called instead of std::abort. Nothing here allocates memory.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const std::exception_ptr lost = std::current_exception()) std::rethrow_exception(lost);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
+    std::_Exit(kResources);
+  } catch (...) {
+    // A fault of the program.
+  }
+  std::abort();
+}
+
 }  // namespace
+
+void report_lost_memory_failures() {
+  std::set_terminate(on_terminate);
+}
 
 int reporting_failures(const std::function<int()>& task) {
   try {
@@ -94,7 +116,7 @@ int reporting_failures(const std::function<int()>& task) {
   } catch (const pliant::OutOfMemory& error) {
     return report(error.what(), kResources);
   } catch (const std::bad_alloc&) {
-    return report("out of memory; reduce the resolution or the number of parts", kResources);
+    return report(kOutOfMemoryText, kResources);
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string what = error.what(), label = "filesystem error: ";
     return report(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),

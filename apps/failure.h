@@ -17,6 +17,10 @@ class ResourceFailure : public std::runtime_error {
 /// error and returns the exit code for this exception (exit_codes.h).
 int reporting_failures(const std::function<int()>& task);
 
+/// Lets the program end with its message and exit code 8 if memory is exhausted where no exception can pass,
+/// for example in a destructor of a library.
+void report_lost_memory_failures();
+
 /// Prints on standard error why a command line cannot be parsed, and returns kCommandLine (exit_codes.h). If
 /// the command line asks for help or the version, prints the answer on standard output and returns kDone.
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error);

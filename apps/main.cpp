@@ -36,6 +36,7 @@ int run_command(int argc, char** argv) {
   pliant_cli::add_list(app, action);
   pliant_cli::add_render(app, action);
   pliant_cli::add_export(app, action);
+  pliant_cli::add_verify(app, action);
   pliant_cli::add_schema(app, action);
   pliant_cli::add_doctor(app, action);
   if (argc <= 1) {
@@ -53,6 +54,7 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pliant_cli::report_lost_memory_failures();
   return pliant_cli::reporting_failures([&] {
     const int code = run_command(argc, argv);
     if (!std::cout.flush())

@@ -53,6 +53,7 @@ int render(const RenderCommand& command) {
   const std::vector<std::int64_t> frames = parse_frames(command.frames).frames(run.frames());
   const fs::path folder =
       command.folder.empty() ? fs::path(command.run) / pliant::kFrameFolder : fs::path(command.folder);
+  pliant::require_picture_memory(run.scene->width, run.scene->height);
   prepare_frame_folder(folder, frames, "png", command.force);
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);

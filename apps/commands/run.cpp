@@ -33,6 +33,7 @@ struct RunCommand {
   ColorOptions colors;
   std::string folder, size, integrator;
   std::optional<double> end, step, tolerance, frame_rate;
+  double checkpoint_every = pliant::kStandardCheckpointInterval;
   bool obj = false, png = false, quiet = false, force = false, resume = false, estimate = false,
        strict = false;
   int threads = 0;
@@ -149,19 +150,23 @@ int run_scene(const RunCommand& command) {
   const fs::path folder = folder_of(command);
   SceneOptions asked = command.scene;
   std::optional<pliant::RunRecord> previous;
-  if (command.resume) {
-    previous = pliant::read_run_record(folder / pliant::kRunFile);
+  const fs::path record = command.resume ? pliant::find_run_file(folder) : fs::path();
+  if (!record.empty()) {
+    previous = pliant::read_run_record(record);
     if (asked.overrides.empty()) asked.overrides = previous->overrides;
   }
   const std::unique_ptr<pliant::Scene> scene = read(asked);
   apply_options(command, previous, *scene);
 
   // These calls throw before the simulation starts if a later stage would fail: the estimate of the error,
-  // the number of frames, the graphics library.
+  // the number of frames, the memory for a picture, the graphics library.
   if (command.estimate) pliant::require_better_run(*scene);
   if (command.obj || command.png) pliant::FrameRange().size(pliant::schedule_of(*scene).frames());
   pliant::RunOptions options;
-  if (command.png) options.graphics = require_graphics(command.backend);
+  if (command.png) {
+    pliant::require_picture_memory(scene->width, scene->height);
+    options.graphics = require_graphics(command.backend);
+  }
 
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
@@ -170,6 +175,7 @@ int run_scene(const RunCommand& command) {
                      : command.force ? pliant::Existing::force
                                      : pliant::Existing::refuse;
   options.threads = command.threads;
+  options.checkpoint_every = command.checkpoint_every;
   options.scene_file = command.scene.file;
   options.command = command.command_line;
   options.stop = [] { return stop_signal() != 0; };
@@ -267,6 +273,13 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
                     "moved");
   command->add_flag("--quiet", options->quiet, "Show no progress, notes or summary");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
+  command
+      ->add_option(
+          "--checkpoint-every", options->checkpoint_every,
+          "Wall time between two checkpoints (s), from which a killed run is resumed; 0: one after every "
+          "step [30]")
+      ->check(number_from_zero())
+      ->type_name("S");
   command
       ->add_flag("--resume", options->resume,
                  "Continue the run in the folder; the result has the same bits as that of an uninterrupted "

@@ -68,6 +68,11 @@ if(PLIANT_APPS)
   find_package(PNG QUIET)
   pliant_require(PNG_FOUND libpng-dev PLIANT_APPS)
   pliant_package(PNG VERSION ${PNG_VERSION_STRING} TARGETS PNG::PNG CLIENT "PNG")
+
+  # zlib computes the checksums of recordings. libpng needs it too.
+  find_package(ZLIB QUIET)
+  pliant_require(ZLIB_FOUND zlib1g-dev PLIANT_APPS)
+  pliant_package(ZLIB VERSION ${ZLIB_VERSION_STRING} TARGETS ZLIB::ZLIB CLIENT "ZLIB")
 endif()
 
 if(PLIANT_TESTS)

@@ -23,17 +23,8 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
   numbers.insert(numbers.end(), {x[0], x[1], x[2]});
 }
 
-/// Returns the number of rows before the first row whose time is later than t (s).
-std::int64_t rows_until(const std::filesystem::path& path, double t) {
-  const NpyReader table(path);
-  std::vector<double> row(at(table.columns()));
-  std::int64_t rows = 0;
-  for (; rows < table.rows(); ++rows) {
-    table.read(rows, row.data());
-    if (row[0] > t) break;
-  }
-  return rows;
-}
+/// Indices of the tables of checked_contact_tables().
+enum : std::size_t { kContacts, kImpulses };
 
 /// Writes the table `from` as the CSV file `to`. The first column is the time. The next `names` columns are
 /// indices into names_of and become names. Throws RecordingMismatch if the table does not fit.
@@ -101,26 +92,42 @@ std::vector<Column> joint_impulse_columns() {
   return columns;
 }
 
-ContactRecordingWriter::ContactRecordingWriter(NpyWriter contacts, NpyWriter impulses)
-    : contacts_(std::move(contacts)), impulses_(std::move(impulses)) {}
+std::vector<CheckedTable> checked_contact_tables() {
+  return {{kContactsFile, false}, {kJointImpulsesFile, false}};
+}
+
+ChecksumReader contact_checksums(const std::filesystem::path& folder) {
+  return {folder, kContactChecksumsFile, checked_contact_tables()};
+}
+
+ContactRecordingWriter::ContactRecordingWriter(NpyWriter contacts, NpyWriter impulses,
+                                               ChecksumWriter checksums)
+    : contacts_(std::move(contacts)), impulses_(std::move(impulses)), checksums_(std::move(checksums)) {}
 
 ContactRecordingWriter ContactRecordingWriter::create(const std::filesystem::path& folder) {
   return {NpyWriter::create(folder / kContactsFile, static_cast<int>(contact_columns().size())),
-          NpyWriter::create(folder / kJointImpulsesFile, static_cast<int>(joint_impulse_columns().size()))};
+          NpyWriter::create(folder / kJointImpulsesFile, static_cast<int>(joint_impulse_columns().size())),
+          ChecksumWriter::create(folder / kContactChecksumsFile, checked_contact_tables())};
 }
 
-ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::path& folder, double t) {
-  auto resume_table = [&](const char* name, const std::vector<Column>& columns) {
+ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::path& folder,
+                                                      std::int64_t states) {
+  const ChecksumReader checksums = contact_checksums(folder);
+  auto resume_table = [&](std::size_t table, const char* name, const std::vector<Column>& columns) {
     try {
-      return NpyWriter::resume(folder / name, static_cast<int>(columns.size()), rows_until(folder / name, t));
+      return NpyWriter::resume(folder / name, static_cast<int>(columns.size()),
+                               checksums.rows(table, states));
     } catch (const std::system_error&) {
+      throw;
+    } catch (const RecordingMismatch&) {
       throw;
     } catch (const std::runtime_error& fault) {
       throw RecordingMismatch(fault.what());
     }
   };
-  return {resume_table(kContactsFile, contact_columns()),
-          resume_table(kJointImpulsesFile, joint_impulse_columns())};
+  return {resume_table(kContacts, kContactsFile, contact_columns()),
+          resume_table(kImpulses, kJointImpulsesFile, joint_impulse_columns()),
+          ChecksumWriter::resume(folder / kContactChecksumsFile, checked_contact_tables(), states)};
 }
 
 namespace {
@@ -137,14 +144,20 @@ int number_of_other_thing(const Model& model, const Contact& contact) {
 }  // namespace
 
 void ContactRecordingWriter::append(const Simulation& simulation) {
-  if (simulation.contact() == nullptr) return;
-  const ContactRecord& record = simulation.contact()->record();
-  const State& state = simulation.state();
+  if (simulation.contact() != nullptr) {
+    const ContactRecord& record = simulation.contact()->record();
+    append_contacts(simulation, record);
+    append_joints(simulation, record);
+  }
+  checksums_.end_state();
+}
+
+void ContactRecordingWriter::append_contacts(const Simulation& simulation, const ContactRecord& record) {
   std::vector<double> row;
   for (std::size_t k = 0; k < record.contacts.size(); ++k) {
     const Contact& contact = record.contacts[k];
     const int b = number_of_other_thing(simulation.model(), contact);
-    row = {state.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
+    row = {simulation.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
     add_vector(row, contact.x);
     add_vector(row, contact.normal);
     row.push_back(contact.gap);
@@ -152,8 +165,8 @@ void ContactRecordingWriter::append(const Simulation& simulation) {
     add_vector(row, record.impulses[k] / record.time[k]);
     row.push_back(record.sliding[k]);
     contacts_.append(row.data());
+    checksums_.add(kContacts, row.data(), row.size());
   }
-  append_joints(simulation, record);
 }
 
 void ContactRecordingWriter::append_joints(const Simulation& simulation, const ContactRecord& record) {
@@ -174,12 +187,14 @@ void ContactRecordingWriter::append_joints(const Simulation& simulation, const C
       add_vector(row, wrench.force);
       add_vector(row, wrench.torque);
       impulses_.append(row.data());
+      checksums_.add(kImpulses, row.data(), row.size());
     }
   }
 }
 
 void ContactRecordingWriter::flush(bool to_disk) {
   for (NpyWriter* table : {&contacts_, &impulses_}) to_disk ? table->flush_to_disk() : table->flush();
+  to_disk ? checksums_.flush_to_disk() : checksums_.flush();
 }
 
 void write_contact_tables(const std::filesystem::path& folder, const Model& model) {

@@ -48,11 +48,11 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   Json layout;
   layout["format"] = "pliant recording";
   layout["version"] = kRecordingVersion;
-  layout["rows"] = std::string("one row per state; row i of ") + kTimesFile + ", " + kCoordinatesFile + ", " +
-                   kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
-                   " is state i; the number of states is the smallest number of rows of these .npy tables, "
-                   "without the last states whose rows of " +
-                   kContactCacheFile + " are missing";
+  layout["rows"] =
+      std::string("one row per state; row i of ") + kTimesFile + ", " + kCoordinatesFile + ", " +
+      kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
+      " is state i; the number of states is the smallest number of rows of these .npy tables and of " +
+      kChecksumsFile + ", without the last states whose rows of " + kContactCacheFile + " are missing";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},
@@ -71,11 +71,13 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
         "which "
         "are columns of modes.npy; rows are counted from 0";
   }
+  tables[kChecksumsFile] = json_of(checksum_columns(checked_tables(model)));
   tables[kTrajectoryFile] = json_of(trajectory);
   if (contacts) {
     for (const char* file : {kContactsFile, kContactsTable}) tables[file] = json_of(contact_columns());
     for (const char* file : {kJointImpulsesFile, kJointImpulsesTable})
       tables[file] = json_of(joint_impulse_columns());
+    tables[kContactChecksumsFile] = json_of(checksum_columns(checked_contact_tables()));
     layout["contact_rows"] =
         "zero or more rows per state, with the time of the state; they describe the step that ends at this "
         "time; if impacts divide the step into sections, a contact has a row for each section";

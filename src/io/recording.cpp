@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include <pliant/body/advance.h>
 #include <pliant/body/dynamics.h>
 #include <pliant/io/format/number_text.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
 #include <pliant/method/step_path.h>
@@ -44,10 +44,11 @@ void compare_columns(const nlohmann::json& layout, const char* table, int count,
 }
 
 void compare_layout(const std::filesystem::path& file, const Model& model) {
-  std::ifstream stream(file);
-  if (!stream) throw RecordingMismatch("there is no recording: cannot read " + file.string());
+  if (!std::filesystem::exists(file))
+    throw RecordingMismatch("there is no recording: " + file.string() + " is missing");
+  const std::string text = read_whole_file(file);
   try {
-    const nlohmann::json layout = nlohmann::json::parse(stream);
+    const nlohmann::json layout = nlohmann::json::parse(text);
     if (layout.at("version") != kRecordingVersion)
       throw RecordingMismatch(file.string() + " has version " + layout.at("version").dump() + ", expected " +
                               std::to_string(kRecordingVersion));
@@ -93,6 +94,17 @@ bool has_contact_cache(const Model& model) {
   return model.body().contact.active;
 }
 
+}  // namespace
+
+std::vector<CheckedTable> checked_tables(const Model& model) {
+  std::vector<CheckedTable> tables{
+      {kTimesFile, true}, {kCoordinatesFile, true}, {kVelocitiesFile, true}, {kModesFile, true}};
+  if (has_contact_cache(model)) tables.push_back({kContactCacheFile, false});
+  return tables;
+}
+
+namespace {
+
 int cached_contact_count() {
   return static_cast<int>(contact_cache_columns().size());
 }
@@ -108,6 +120,10 @@ CachedContactRows cached_contact_rows(const std::vector<double>& modes) {
     return {};
   return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
 }
+
+/// Indices of the tables of checked_tables().
+enum : std::size_t { kTimes, kCoordinates, kVelocities, kModes, kContactCache };
+
 std::vector<double> read_row(const NpyReader& table, std::int64_t row) {
   std::vector<double> numbers(static_cast<std::size_t>(table.columns()));
   table.read(row, numbers.data());
@@ -116,23 +132,19 @@ std::vector<double> read_row(const NpyReader& table, std::int64_t row) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities,
-                                 NpyWriter modes, std::optional<NpyWriter> contact_cache)
-    : times_(std::move(times)),
-      coordinates_(std::move(coordinates)),
-      velocities_(std::move(velocities)),
-      modes_(std::move(modes)),
-      contact_cache_(std::move(contact_cache)) {}
+RecordingWriter::RecordingWriter(Tables tables, ChecksumWriter checksums)
+    : tables_(std::move(tables)), checksums_(std::move(checksums)) {}
 
 RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model,
                                         bool in_clusters) {
   std::optional<NpyWriter> contact_cache;
   if (has_contact_cache(model))
     contact_cache.emplace(NpyWriter::create(folder / kContactCacheFile, cached_contact_count()));
-  return {NpyWriter::create(folder / kTimesFile, kNpyVector),
-          NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
-          NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-          NpyWriter::create(folder / kModesFile, mode_count(model, in_clusters)), std::move(contact_cache)};
+  return {{NpyWriter::create(folder / kTimesFile, kNpyVector),
+           NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
+           NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
+           NpyWriter::create(folder / kModesFile, mode_count(model, in_clusters)), std::move(contact_cache)},
+          ChecksumWriter::create(folder / kChecksumsFile, checked_tables(model))};
 }
 
 RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model,
@@ -146,34 +158,46 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
                               std::to_string(rows - 1));
     contact_cache.emplace(NpyWriter::resume(folder / kContactCacheFile, cached_contact_count(), end));
   }
-  return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
-          NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
-          NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
-          NpyWriter::resume(folder / kModesFile, open_modes(folder, model).columns(), rows),
-          std::move(contact_cache)};
+  return {{NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
+           NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
+           NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
+           NpyWriter::resume(folder / kModesFile, open_modes(folder, model).columns(), rows),
+           std::move(contact_cache)},
+          ChecksumWriter::resume(folder / kChecksumsFile, checked_tables(model), rows)};
 }
 
 void RecordingWriter::append(const State& state) {
   const double time = state.time();
-  coordinates_.append(state.q.data());
-  velocities_.append(state.v.data());
-  if (contact_cache_)
-    for (const CachedContact& contact : state.contact_cache)
-      contact_cache_->append(cached_contact_row(contact).data());
-  write_modes(state, contact_cache_ ? contact_cache_->rows() : 0, row_);
-  modes_.append(row_.data());
-  times_.append(&time);
+  tables_.times.append(&time);
+  checksums_.add(kTimes, &time, 1);
+  tables_.coordinates.append(state.q.data());
+  checksums_.add(kCoordinates, state.q.data(), static_cast<std::size_t>(state.q.size()));
+  tables_.velocities.append(state.v.data());
+  checksums_.add(kVelocities, state.v.data(), static_cast<std::size_t>(state.v.size()));
+  if (tables_.contact_cache)
+    for (const CachedContact& contact : state.contact_cache) {
+      const std::vector<double> row = cached_contact_row(contact);
+      tables_.contact_cache->append(row.data());
+      checksums_.add(kContactCache, row.data(), row.size());
+    }
+  write_modes(state, tables_.contact_cache ? tables_.contact_cache->rows() : 0, row_);
+  tables_.modes.append(row_.data());
+  checksums_.add(kModes, row_.data(), row_.size());
+  checksums_.end_state();
 }
 
 void RecordingWriter::flush(bool to_disk) {
-  if (contact_cache_) to_disk ? contact_cache_->flush_to_disk() : contact_cache_->flush();
-  for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_})
-    to_disk ? table->flush_to_disk() : table->flush();
+  auto flush_table = [to_disk](auto& table) { to_disk ? table.flush_to_disk() : table.flush(); };
+  if (tables_.contact_cache) flush_table(*tables_.contact_cache);
+  for (NpyWriter* table : {&tables_.coordinates, &tables_.velocities, &tables_.modes, &tables_.times})
+    flush_table(*table);
+  flush_table(checksums_);
 }
 
 std::size_t RecordingWriter::pending_bytes() const {
-  return coordinates_.pending_bytes() + velocities_.pending_bytes() + modes_.pending_bytes() +
-         (contact_cache_ ? contact_cache_->pending_bytes() : 0);
+  return tables_.coordinates.pending_bytes() + tables_.velocities.pending_bytes() +
+         tables_.modes.pending_bytes() + checksums_.pending_bytes() +
+         (tables_.contact_cache ? tables_.contact_cache->pending_bytes() : 0);
 }
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
@@ -181,13 +205,12 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
       coordinates_(
           (compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
-      modes_(open_modes(folder, model)) {
+      modes_(open_modes(folder, model)),
+      checksums_(folder, kChecksumsFile, checked_tables(model)) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
-  std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
-  if (has_contact_cache(model)) {
+  if (has_contact_cache(model))
     contact_cache_.emplace(open_table(folder / kContactCacheFile, cached_contact_count()));
-    while (rows > 0 && cached_contact_rows(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
-  }
+  const std::int64_t rows = checksums_.whole_states();
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
   for (std::size_t row = 1; row < times_.size(); ++row)

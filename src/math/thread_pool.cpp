@@ -1,10 +1,12 @@
 // The threads wait for the tasks of a call of run(), fetch task numbers from one counter, and report the end.
 #include <pliant/math/thread_pool.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -49,6 +51,15 @@ struct ThreadPool::Impl {
     }
     in_task = false;
   }
+  /// Ends all threads.
+  void end() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      stop = true;
+    }
+    wake.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
   void serve() {
     long seen = 0;
     std::unique_lock<std::mutex> lock(mutex);
@@ -64,17 +75,21 @@ struct ThreadPool::Impl {
   }
 };
 
+// If the system refuses a thread, the pool works with fewer threads: results do not depend on their number.
 ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>()) {
-  for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([this] { impl_->serve(); });
+  impl_->threads.reserve(static_cast<std::size_t>(std::max(0, threads - 1)));
+  try {
+    for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([pool = impl_.get()] { pool->serve(); });
+  } catch (const std::system_error&) {
+    // There are fewer threads.
+  } catch (...) {
+    impl_->end();
+    throw;
+  }
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->stop = true;
-  }
-  impl_->wake.notify_all();
-  for (std::thread& thread : impl_->threads) thread.join();
+  impl_->end();
 }
 
 int ThreadPool::threads() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pliant/contact/contact_resolution.h>
+#include <pliant/io/checksums.h>
 #include <pliant/io/format/column.h>
 #include <pliant/io/format/npy.h>
 #include <pliant/simulate/simulation.h>
@@ -25,24 +26,35 @@ class ContactRecordingWriter {
   /// Creates new tables. Throws std::system_error if a table exists. All members throw it if a table cannot
   /// be written.
   static ContactRecordingWriter create(const std::filesystem::path& folder);
-  /// Opens existing tables and removes their rows after time t (s). Throws RecordingMismatch if a table is
-  /// damaged.
-  static ContactRecordingWriter resume(const std::filesystem::path& folder, double t);
+  /// Opens existing tables and removes their rows after the first `states` recorded states. Throws
+  /// RecordingMismatch if a table is damaged.
+  static ContactRecordingWriter resume(const std::filesystem::path& folder, std::int64_t states);
 
-  /// Appends the contacts and the joint impulses of the last step of the simulation; nothing if the
-  /// simulation has no contact. The rows stay in memory until flush().
+  /// Appends the contacts and the joint impulses of the last step of the simulation, which belong to a
+  /// recorded state. The rows stay in memory until flush().
   void append(const Simulation& simulation);
   /// Writes the rows in memory to the files. With to_disk, they survive a power cut too.
   void flush(bool to_disk = false);
-  std::size_t pending_bytes() const { return contacts_.pending_bytes() + impulses_.pending_bytes(); }
+  std::size_t pending_bytes() const {
+    return contacts_.pending_bytes() + impulses_.pending_bytes() + checksums_.pending_bytes();
+  }
+  /// Returns the checksums of both tables with all rows so far.
+  Checksums checksums() const { return checksums_.checksums(); }
 
  private:
-  ContactRecordingWriter(NpyWriter contacts, NpyWriter impulses);
+  ContactRecordingWriter(NpyWriter contacts, NpyWriter impulses, ChecksumWriter checksums);
+  void append_contacts(const Simulation& simulation, const ContactRecord& record);
   void append_joints(const Simulation& simulation, const ContactRecord& record);
 
   NpyWriter contacts_, impulses_;
+  ChecksumWriter checksums_;
   Workspace<double> work_;
 };
+
+/// Opens the checksums of both tables, contact_checksums.npy. Throws std::system_error, RecordingMismatch.
+ChecksumReader contact_checksums(const std::filesystem::path& folder);
+/// Returns the tables that contact_checksums.npy checks.
+std::vector<CheckedTable> checked_contact_tables();
 
 /// Writes contacts.csv and joint_impulses.csv from the recorded tables. Throws std::system_error,
 /// RecordingMismatch.

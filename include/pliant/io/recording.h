@@ -1,8 +1,9 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
-// joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
-// state is the initial state or a state after a step, never an interpolated one. A run resumed from it
-// reproduces all later states bit by bit. layout.json names every column.
+// joints) and a check number. supports.npy contains the contact cache of scenes with contact, and
+// checksums.npy the checksums of these tables. A recorded state is the initial state or a state after a step,
+// never an interpolated one. A run resumed from it reproduces all later states bit by bit. layout.json names
+// every column.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <pliant/body/model.h>
+#include <pliant/io/checksums.h>
 #include <pliant/io/format/column.h>
 #include <pliant/io/format/npy.h>
 #include <pliant/io/frame_schedule.h>
@@ -29,13 +31,17 @@ class RecordingMismatch : public std::runtime_error {
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
                   const std::vector<Column>& trajectory, bool contacts = false);
 
+/// Returns the tables of states that checksums.npy checks.
+std::vector<CheckedTable> checked_tables(const Model& model);
+
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {
  public:
   /// Creates new tables. Throws std::system_error if a table exists.
   static RecordingWriter create(const std::filesystem::path& folder, const Model& model,
                                 bool in_clusters = false);
-  /// Opens the tables in a folder and removes all states after the first `rows` states.
+  /// Opens the tables in a folder and removes all states after the first `rows` states. Throws
+  /// std::system_error, RecordingMismatch.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
   /// Appends a state, which stays in memory until flush().
@@ -43,15 +49,20 @@ class RecordingWriter {
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.
   void flush(bool to_disk = false);
-  std::int64_t rows() const { return times_.rows(); }
+  std::int64_t rows() const { return tables_.times.rows(); }
   std::size_t pending_bytes() const;
+  /// Returns the checksums of all tables with the states so far.
+  Checksums checksums() const { return checksums_.checksums(); }
 
  private:
-  RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes,
-                  std::optional<NpyWriter> contact_cache);
+  struct Tables {
+    NpyWriter times, coordinates, velocities, modes;
+    std::optional<NpyWriter> contact_cache;
+  };
+  RecordingWriter(Tables tables, ChecksumWriter checksums);
 
-  NpyWriter times_, coordinates_, velocities_, modes_;
-  std::optional<NpyWriter> contact_cache_;
+  Tables tables_;
+  ChecksumWriter checksums_;
   std::vector<double> row_;
 };
 
@@ -59,8 +70,14 @@ class RecordingWriter {
 class Recording {
  public:
   /// Opens a recording. Throws std::system_error if a file cannot be read, RecordingMismatch if it is damaged
-  /// or its columns differ from those of the model.
+  /// or its columns differ from those of the model. The numbers are not compared with their checksums.
   Recording(const std::filesystem::path& folder, const Model& model);
+
+  /// Compares all recorded numbers with their checksums. Returns one text per damaged file; empty if all
+  /// numbers are as they were written.
+  std::vector<std::string> damage() const { return checksums_.damage(rows()); }
+  /// Returns the checksums of all tables after the first `states` states.
+  Checksums checksums(std::int64_t states) const { return checksums_.checksums(states); }
 
   std::int64_t rows() const { return static_cast<std::int64_t>(times_.size()); }
   double time(std::int64_t row) const { return times_[static_cast<std::size_t>(row)]; }
@@ -80,6 +97,7 @@ class Recording {
   const Model* model_;
   NpyReader coordinates_, velocities_, modes_;
   std::optional<NpyReader> contact_cache_;
+  ChecksumReader checksums_;
   std::vector<double> times_;
 };
 

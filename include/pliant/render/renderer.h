@@ -11,6 +11,10 @@
 
 namespace pliant {
 
+/// Throws OutOfMemory, with the needed memory and the limit, if this process cannot have the memory that
+/// drawing a picture of this size needs. To be called before a GL library is loaded. width, height: pixels.
+void require_picture_memory(int width, int height);
+
 /// Keeps its GL buffers between frames: if a body has the same triangles as in the previous frame, only its
 /// vertices are sent to GL. One thread at a time may draw with a renderer. Any number of renderers may exist.
 class Renderer {
@@ -19,7 +23,8 @@ class Renderer {
 
   /// Opens a GL library. No GL library is loaded before the first renderer or context is constructed, or
   /// probe_gl_backends() is called. width, height: pixels. Throws std::invalid_argument unless both are in
-  /// [1, kMaxSide], and std::runtime_error if no backend opens or none can draw a picture of this size.
+  /// [1, kMaxSide], and std::runtime_error if no backend opens or none
+  /// can draw a picture of this size.
   Renderer(int width, int height, GlBackend backend = GlBackend::automatic);
   ~Renderer();
   Renderer(const Renderer&) = delete;

@@ -17,6 +17,8 @@
 
 #include <pliant/io/file_fault.h>
 
+#include <pliant/io/retry.h>
+
 namespace pliant {
 namespace {
 
@@ -35,8 +37,7 @@ void write_at(int descriptor, const void* bytes, std::size_t size, std::int64_t 
               const std::filesystem::path& path) {
   const char* next = static_cast<const char*>(bytes);
   while (size > 0) {
-    const ssize_t written = ::pwrite(descriptor, next, size, offset);
-    if (written < 0 && errno == EINTR) continue;
+    const ssize_t written = retry([&] { return ::pwrite(descriptor, next, size, offset); });
     if (written < 0) throw_file_fault(errno, "write", path, size);
     next += written;
     offset += written;
@@ -49,9 +50,10 @@ std::size_t read_at(int descriptor, void* bytes, std::size_t size, std::int64_t 
                     const std::filesystem::path& path) {
   std::size_t done = 0;
   while (done < size) {
-    const ssize_t count = ::pread(descriptor, static_cast<char*>(bytes) + done, size - done,
-                                  offset + static_cast<std::int64_t>(done));
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = retry([&] {
+      return ::pread(descriptor, static_cast<char*>(bytes) + done, size - done,
+                     offset + static_cast<std::int64_t>(done));
+    });
     if (count < 0) throw_file_fault(errno, "read", path);
     if (count == 0) break;
     done += static_cast<std::size_t>(count);
@@ -95,6 +97,7 @@ NpyWriter::NpyWriter(NpyWriter&& other) noexcept
       columns_(other.columns_),
       rows_(other.rows_),
       rows_in_file_(other.rows_in_file_),
+      on_disk_(other.on_disk_),
       pending_(std::move(other.pending_)) {}
 
 NpyWriter::~NpyWriter() {
@@ -102,7 +105,8 @@ NpyWriter::~NpyWriter() {
 }
 
 NpyWriter NpyWriter::create(const std::filesystem::path& path, int columns) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  const int descriptor =
+      retry([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666); });
   if (descriptor < 0) throw_file_fault(errno, "create", path);
   NpyWriter writer(path, descriptor, columns, 0);
   writer.write_header();
@@ -117,26 +121,32 @@ NpyWriter NpyWriter::resume(const std::filesystem::path& path, int columns, std:
     if (reader.rows() < rows)
       refuse(path, std::to_string(reader.rows()) + " rows, expected " + std::to_string(rows));
   }
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+  const int descriptor = retry([&] { return ::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC); });
   if (descriptor < 0) throw_file_fault(errno, "write", path);
   NpyWriter writer(path, descriptor, columns, rows);
   writer.write_header();
   const auto size = static_cast<off_t>(kHeader + row_bytes(columns) * static_cast<std::size_t>(rows));
-  if (::ftruncate(descriptor, size) != 0) throw_file_fault(errno, "truncate", path);
+  if (retry([&] { return ::ftruncate(descriptor, size); }) != 0) throw_file_fault(errno, "truncate", path);
   return writer;
 }
 
-void NpyWriter::write_header() {
+std::string npy_header(int columns, std::int64_t rows) {
   std::string header = "\x93NUMPY";
   header += {'\x01', '\x00', static_cast<char>(kHeader - 10), '\x00'};
   header += std::string("{'descr': '") + kType + "', 'fortran_order': False, 'shape': (" +
-            std::to_string(rows_) + ",";
-  if (columns_ != kNpyVector) header += " " + std::to_string(columns_);
+            std::to_string(rows) + ",";
+  if (columns != kNpyVector) header += " " + std::to_string(columns);
   header += "), }";
   header.resize(kHeader - 1, ' ');
   header += '\n';
+  return header;
+}
+
+void NpyWriter::write_header() {
+  const std::string header = npy_header(columns_, rows_);
   write_at(descriptor_, header.data(), header.size(), 0, path_);
   rows_in_file_ = rows_;
+  on_disk_ = false;
 }
 
 void NpyWriter::append(const double* row) {
@@ -155,11 +165,13 @@ void NpyWriter::flush() {
 
 void NpyWriter::flush_to_disk() {
   flush();
-  if (::fsync(descriptor_) != 0) throw_file_fault(errno, "write", path_);
+  if (on_disk_) return;
+  if (retry([&] { return ::fsync(descriptor_); }) != 0) throw_file_fault(errno, "write", path_);
+  on_disk_ = true;
 }
 
 NpyReader::NpyReader(std::filesystem::path path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  descriptor_ = retry([&] { return ::open(path_.c_str(), O_RDONLY | O_CLOEXEC); });
   if (descriptor_ < 0) throw_file_fault(errno, "read", path_);
   try {
     struct stat status {};

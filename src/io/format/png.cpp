@@ -5,6 +5,7 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -12,14 +13,17 @@
 
 #include <png.h>
 
+#include <pliant/io/checksums.h>
 #include <pliant/io/format/whole_file.h>
 
 namespace pliant {
 namespace {
 
+constexpr const char* kOutOfMemory = "out of memory";
+
 struct Encoding {
   std::vector<std::uint8_t> bytes;
-  char reason[200] = "out of memory";
+  char reason[200] = "out of memory";  // if libpng cannot allocate its own objects
 };
 
 void on_error(png_structp png, png_const_charp reason) {
@@ -38,7 +42,7 @@ void on_bytes(png_structp png, png_bytep bytes, png_size_t size) {
   } catch (const std::bad_alloc&) {
     grown = false;
   }
-  if (!grown) png_error(png, "out of memory");
+  if (!grown) png_error(png, kOutOfMemory);
 }
 
 void on_flush(png_structp) {}
@@ -75,8 +79,40 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool encoded = info && encode(png, info, image, encoding);
   png_destroy_write_struct(&png, &info);
+  if (!encoded && std::strcmp(encoding.reason, kOutOfMemory) == 0) throw std::bad_alloc();
   if (!encoded) throw std::runtime_error("cannot write " + path.string() + ": " + encoding.reason);
   write_whole_file(path, encoding.bytes.data(), encoding.bytes.size());
+}
+
+namespace {
+
+std::uint32_t big_endian(const char* bytes) {
+  std::uint32_t number = 0;
+  for (int i = 0; i < 4; ++i) number = number << 8 | static_cast<unsigned char>(bytes[i]);
+  return number;
+}
+
+}  // namespace
+
+void check_png(const std::filesystem::path& path) {
+  const std::string bytes = read_whole_file(path);
+  auto refuse = [&path](const std::string& why) {
+    throw std::runtime_error(path.string() + " is damaged: " + why);
+  };
+  constexpr std::size_t chunk = 12;  // bytes of a chunk besides its data: length, kind and checksum
+  const std::string signature = "\x89PNG\r\n\x1a\n";
+  if (bytes.compare(0, signature.size(), signature) != 0) refuse("it does not begin as a PNG file");
+  std::string kind;
+  std::size_t at = signature.size();
+  while (kind != "IEND" && bytes.size() - at >= chunk) {
+    const std::size_t length = big_endian(bytes.data() + at);
+    if (bytes.size() - at - chunk < length) break;
+    kind = bytes.substr(at + 4, 4);
+    if (crc32_after(0, bytes.data() + at + 4, length + 4) != big_endian(bytes.data() + at + 8 + length))
+      refuse("the checksum of a chunk at byte " + std::to_string(at) + " does not match");
+    at += chunk + length;
+  }
+  if (kind != "IEND" || at != bytes.size()) refuse("its last chunk is not at its end");
 }
 
 const char* png_library_version() {

@@ -7,8 +7,7 @@
 
 #include <pliant/contact/longest_contact_step.h>
 #include <pliant/io/format/number_text.h>
-#include <pliant/io/format/ply.h>
-#include <pliant/io/format/whole_file.h>
+#include <pliant/io/run/checkpoint.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/io/run/energy_gate.h>
 #include <pliant/io/run/joint_notes.h>
@@ -32,18 +31,6 @@ constexpr double kRemedyShare = 3, kMaxRemedyShare = 10;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Throws RecordingMismatch if a setting of a resumed run has changed. hint: appended to the message.
-template <class Value>
-void require_same(const char* name, const Value& recorded, const Value& now, const std::string& hint = "") {
-  if (recorded == now) return;
-  std::string message = std::string("cannot resume this run: ") + name + " was ";
-  if constexpr (std::is_arithmetic_v<Value>)
-    message += number_text(recorded) + " and is now " + number_text(now);
-  else
-    message += recorded + " and is now " + now;
-  throw RecordingMismatch(message + hint);
 }
 
 // Returns the simulation of a scene. Throws std::invalid_argument for inconsistent settings of the scene.
@@ -85,31 +72,33 @@ FrameSchedule schedule_of(const Scene& scene) {
 }
 
 Run::Run(Scene& scene, RunOptions options, Progress& progress)
-    : scene_(&scene), options_(std::move(options)), progress_(&progress), schedule_(schedule_of(scene)) {
-  const Clock::time_point start = Clock::now();
+    : scene_(&scene),
+      options_(std::move(options)),
+      progress_(&progress),
+      schedule_(schedule_of(scene)),
+      started_(Clock::now()) {
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_.threads);
   energies_.emplace(simulation_->model());
   const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
-  folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
-  if (options_.existing == Existing::resume)
-    resume_recording();
+  set_identity();
+  set_options();
+  folder_ = std::make_unique<RunFolder>(
+      options_.folder, options_.existing, source,
+      [this](const std::filesystem::path& file) { write_run_record(file, record_); });
+  if (!folder_->note().empty()) note(folder_->note());
+  if (options_.existing == Existing::resume && folder_->has_run())
+    resume_recording(stable);
   else
-    begin_recording();
-  describe(stable);
-  record_.add_seconds("prepare", seconds_since(start));
-  note_setup(stable);
-  write_layout(folder_->path(), simulation_->model(), schedule_,
-               TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
-  list_files();
-  save(true);
+    begin_recording(stable);
+  checkpointed_ = Clock::now();
 }
 
 Run::~Run() = default;
 
 /// Sets the options of this session in the run record.
-void Run::describe(const StableStep& stable) {
+void Run::set_options() {
   const Scene& scene = *scene_;
   record_.status = RunRecord::Status::running;
   record_.message.clear();
@@ -123,9 +112,17 @@ void Run::describe(const StableStep& stable) {
   record_.width = scene.width;
   record_.height = scene.height;
   record_.steps = schedule_.steps();
+}
+
+/// Sets the options of this session and the properties of the model in the run record, and adds notes on
+/// them.
+void Run::describe(const StableStep& stable) {
+  set_options();
   record_.stable_step = stable.step;
   record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());
+  record_.add_seconds("prepare", seconds_since(started_));
+  note_setup(stable);
 }
 
 /// Adds notes on a step that is too large, on the chosen integrator, on the assembly and on redundant
@@ -144,115 +141,6 @@ void Run::note_setup(const StableStep& stable) {
          count_text(assembly.iterations, "iteration") +
          (assembly.converged ? "" : ", the maximum; the shapes have not converged"));
   note_redundancy();
-}
-
-/// Adds to the run record the names of the files that are written during the run.
-void Run::list_files() {
-  for (const char* file :
-       {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
-    if (file != kSceneFile || !scene_->document.empty()) record_.add_file(file);
-  if (simulation_->model().body().contact.active) record_.add_file(kContactCacheFile);
-  if (scene_->contacts)
-    for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
-}
-
-void Run::begin_recording() {
-  record_.build = build_info();
-  record_.scene_hash = scene_->hash;
-  record_.requested_step = scene_->tolerance > 0 ? 0 : scene_->step;
-  record_.tolerance = scene_->tolerance;
-  record_.step = schedule_.step();
-  record_.frame_rate = scene_->frame_rate;
-  record_.integrator = simulation_->integrator().name();
-  record_.requested_integrator = scene_->integrator;
-  if (schedule_.step() != record_.requested_step) {
-    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
-         number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
-  }
-  write_run_record(*folder_ / kRunFile, record_);  // run.json marks the folder as the folder of a run
-  if (!scene_->document.empty())
-    write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
-  for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
-    const MeshFile& mesh = scene_->obstacles[i].mesh;
-    if (mesh.triangles.cols() == 0) continue;
-    const std::string& name = scene_->body.contact.obstacles[i].name;
-    const std::string file = recorded_mesh_name(name);
-    write_ply(folder_->path() / file,
-              {{name, scene_->obstacles[i].color, node_mesh(mesh.triangles, mesh.vertices)}});
-    record_.add_file(file);
-  }
-  writer_ = std::make_unique<RecordingWriter>(
-      RecordingWriter::create(folder_->path(), simulation_->model(), simulation_->clusters() != nullptr));
-  if (scene_->contacts)
-    contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(folder_->path()));
-  record_state();
-  flush();
-}
-
-/// Throws RecordingMismatch if build, scene or settings differ from those of the recorded run.
-void Run::check_resumable() const {
-  for (const auto& [name, value] : build_info()) {
-    const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
-                                       [&key = name](const auto& entry) { return entry.first == key; });
-    require_same(("its program's " + name).c_str(),
-                 recorded == record_.build.end() ? "unknown" : recorded->second, value,
-                 "; only the build that began the run reproduces its numbers");
-  }
-  if (record_.scene_hash != scene_->hash)
-    throw RecordingMismatch("cannot resume this run: the scene, its meshes or its --set values have changed");
-  require_same("the integrator", record_.requested_integrator, scene_->integrator);
-  require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
-  require_same("the tolerance", record_.tolerance, scene_->tolerance);
-  if (scene_->tolerance == 0) require_same("the step", record_.requested_step, scene_->step);
-}
-
-/// Sets the simulation to the last recorded state that an uninterrupted run would reach. keep: on call, the
-/// number of recorded states; on return, the number of these that an uninterrupted run would record.
-void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
-  // With error control, the last step may have been shortened by the end of the run. If the new end is later,
-  // this step is removed and repeated.
-  if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
-      scene_->end > record_.end)
-    --keep;
-  if (keep == 0) return;
-  State last = recorded.state(keep - 1);
-  if (last.time() > schedule_.end() * (1 + 1e-9))
-    throw RecordingMismatch("cannot resume this run: it has reached t = " + number_text(last.time()) +
-                            " s, beyond the requested end of " + number_text(scene_->end) + " s");
-  // An uninterrupted run does not record a state that was recorded only because the run ended there.
-  const bool in_unbroken =
-      scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
-                            : schedule_.records(last.step);
-  if (in_unbroken)
-    recorded_time_ = last.time();
-  else
-    --keep;
-  simulation_->set_state(std::move(last));
-}
-
-void Run::resume_recording() {
-  record_ = read_run_record(*folder_ / kRunFile);
-  check_resumable();
-  energies_->set_range(record_.energies);
-  if (scene_->tolerance == 0)
-    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
-  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
-    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
-         number_text(record_.step) + " s of this run; the run ends at " + number_text(schedule_.end()) +
-         " s");
-  }
-  const Recording recorded = recording();
-  std::int64_t keep = recorded.rows();
-  set_last_state(recorded, keep);
-  writer_ =
-      std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
-  if (scene_->contacts)
-    contacts_ = std::make_unique<ContactRecordingWriter>(
-        ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
-  if (keep == 0 && simulation_->time() == 0) record_state();
-  earlier_steps_ = record_.step_counters;
-  earlier_counters_ = record_.counters;
-  ++record_.resumed;
 }
 
 void Run::note(const std::string& text) {
@@ -392,20 +280,46 @@ void Run::flush(bool to_disk) {
 
 void Run::write_tables() {
   write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording());
-  record_.add_file(kTrajectoryFile);
+  add_whole_file(folder_->path(), kTrajectoryFile);
   if (!contacts_) return;
   write_contact_tables(folder_->path(), simulation_->model());
-  for (const char* file : {kContactsTable, kJointImpulsesTable}) record_.add_file(file);
+  for (const char* file : {kContactsTable, kJointImpulsesTable}) add_whole_file(folder_->path(), file);
 }
 
 void Run::save(bool to_disk) {
   flush(to_disk);
-  record_.time = simulation_->time();
-  record_.states = writer_->rows();
+  update_record();
   write_record();
 }
 
-void Run::write_record() {
+/// Writes a checkpoint. All states recorded before it are then on the disk too.
+void Run::save_checkpoint() {
+  save(true);
+  write_checkpoint(folder_->path(), {writer_->rows(), simulation_->state()});
+  checkpointed_ = Clock::now();
+}
+
+/// Sets the progress and the checksums of the recorded states in the run record.
+void Run::update_record() {
+  record_.time = simulation_->time();
+  record_.states = writer_->rows();
+  for (const auto& [table, checksum] : writer_->checksums()) {
+    record_.add_file(table);
+    record_.set_checksum(table, checksum);
+  }
+  record_.add_file(kChecksumsFile);
+  if (contacts_) {
+    for (const auto& [table, checksum] : contacts_->checksums()) {
+      record_.add_file(table);
+      record_.set_checksum(table, checksum);
+    }
+    record_.add_file(kContactChecksumsFile);
+  }
+  count_work();
+}
+
+/// Sets the counters of work and contact errors in the run record, summed over all sessions.
+void Run::count_work() {
   const StepCounters& session = simulation_->step_counters();
   record_.step_counters.steps = earlier_steps_.steps + session.steps;
   record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
@@ -435,6 +349,9 @@ void Run::write_record() {
     if (std::find(record_.velocities_without_inertia.begin(), record_.velocities_without_inertia.end(),
                   name) == record_.velocities_without_inertia.end())
       record_.velocities_without_inertia.push_back(name);
+}
+
+void Run::write_record() {
   write_run_record(*folder_ / kRunFile, record_);
   saved_ = Clock::now();
 }
@@ -451,9 +368,14 @@ void Run::step_to_end() {
     }
     const bool records = scheduled_step(*simulation_, schedule_);
     progress_->advance(simulation_->time() - first_time);
-    if (!records) continue;
-    record_state();
+    if (records) record_state();
     const Clock::time_point now = Clock::now();
+    if (std::chrono::duration<double>(now - checkpointed_).count() >= options_.checkpoint_every &&
+        !at_end(*simulation_, schedule_)) {
+      save_checkpoint();
+      continue;
+    }
+    if (!records) continue;
     const std::size_t pending = writer_->pending_bytes() + (contacts_ ? contacts_->pending_bytes() : 0);
     if (now - flushed < kFlushEvery && pending < kFlushBytes) continue;
     flush();
@@ -487,6 +409,7 @@ bool Run::simulate() {
     }
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
+    if (!stopped_) remove_checkpoints(folder_->path());
     if (record_.step_counters.uncontrolled > 0)
       note("resting contacts of many bodies, or of soft ones, in " +
            count_text(record_.step_counters.uncontrolled, "step") +
@@ -540,6 +463,7 @@ void Run::fail(const std::string& message) noexcept {
   try {
     record_.status = RunRecord::Status::failed;
     record_.message = message;
+    count_work();
     write_record();  // not save(), which flushes the recording: flushing may be what failed
   } catch (const std::exception&) {
     // The first failure is the one that is reported.

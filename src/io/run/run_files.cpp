@@ -9,20 +9,11 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kPart = ".part-";
+
 bool all_digits(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-}
-
-// Returns the final name of a file: NAME for the temporary name "NAME.part-PID-N", else the name itself.
-std::string finished_name(const std::string& name) {
-  const std::size_t mark = name.rfind(".part-");
-  if (mark == std::string::npos) return name;
-  const std::string tail = name.substr(mark + 6);
-  const std::size_t dash = tail.find('-');
-  if (dash == std::string::npos || !all_digits(tail.substr(0, dash)) || !all_digits(tail.substr(dash + 1)))
-    return name;
-  return name.substr(0, mark);
 }
 
 bool is_frame(const std::string& name, const std::string& ending) {
@@ -34,6 +25,22 @@ bool is_frame(const std::string& name, const std::string& ending) {
 
 }  // namespace
 
+std::string finished_name(const std::string& name) {
+  return writing_process(name) < 0 ? name : name.substr(0, name.rfind(kPart));
+}
+
+int writing_process(const std::string& name) {
+  const std::size_t mark = name.rfind(kPart);
+  if (mark == std::string::npos) return -1;
+  const std::string tail = name.substr(mark + std::string(kPart).size());
+  const std::size_t dash = tail.find('-');
+  constexpr std::size_t max_digits = 9;  // such a number is an int
+  if (dash == std::string::npos || dash > max_digits || !all_digits(tail.substr(0, dash)) ||
+      !all_digits(tail.substr(dash + 1)))
+    return -1;
+  return std::stoi(tail.substr(0, dash));
+}
+
 std::string frame_name(const std::string& stem, std::int64_t number, const std::string& ending) {
   std::string digits = std::to_string(number);
   if (digits.size() < 6) digits.insert(0, 6 - digits.size(), '0');
@@ -41,10 +48,25 @@ std::string frame_name(const std::string& stem, std::int64_t number, const std::
 }
 
 bool is_run_file(const std::filesystem::path& relative) {
-  static constexpr std::array<const char*, 14> top{
-      kRunFile,        kSceneFile,         kLayoutFile,         kTimesFile,      kCoordinatesFile,
-      kVelocitiesFile, kModesFile,         kContactCacheFile,   kTrajectoryFile, kContactsFile,
-      kContactsTable,  kJointImpulsesFile, kJointImpulsesTable, kLockFile};
+  static constexpr std::array<const char*, 19> top{kNewRunFile,
+                                                   kRunFile,
+                                                   kSceneFile,
+                                                   kLayoutFile,
+                                                   kTimesFile,
+                                                   kCoordinatesFile,
+                                                   kVelocitiesFile,
+                                                   kModesFile,
+                                                   kChecksumsFile,
+                                                   kContactCacheFile,
+                                                   kCheckpointFiles[0],
+                                                   kCheckpointFiles[1],
+                                                   kTrajectoryFile,
+                                                   kContactsFile,
+                                                   kContactsTable,
+                                                   kJointImpulsesFile,
+                                                   kJointImpulsesTable,
+                                                   kContactChecksumsFile,
+                                                   kLockFile};
   const std::string folder = relative.parent_path().string(),
                     name = finished_name(relative.filename().string());
   if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end() || is_recorded_mesh(name);

@@ -1,6 +1,8 @@
 #include <pliant/io/run/run_folder.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -12,6 +14,8 @@
 #include <unistd.h>
 
 #include <pliant/io/file_fault.h>
+#include <pliant/io/format/whole_file.h>
+#include <pliant/io/retry.h>
 #include <pliant/io/run/run_files.h>
 
 namespace fs = std::filesystem;
@@ -37,6 +41,55 @@ bool is_in(const fs::path& file, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
+/// Returns whether a name is that of an unfinished file or folder of a run.
+bool is_unfinished(const fs::path& name) {
+  const std::string text = name.string(), finished = finished_name(text);
+  return finished != text && (finished == kNewRun || is_run_file(finished));
+}
+
+/// Returns whether a name in the folder of a run is that of a file that remains if the run is killed before
+/// it has begun.
+bool is_leftover(const fs::path& name) {
+  return name == kLockFile || name == kNewRunFile || is_unfinished(name);
+}
+
+bool process_exists(int process) {
+  return ::kill(process, 0) == 0 || errno != ESRCH;
+}
+
+/// Returns the path of run.json of the run that has begun in a folder; empty if there is none.
+fs::path begun_run_file(const fs::path& folder) {
+  for (const char* place : {kWholeNewRun, kMovingNewRun, "."}) {
+    const fs::path file = (folder / place / kRunFile).lexically_normal();
+    if (exists_at_all(file)) return file;
+  }
+  return {};
+}
+
+/// Creates a folder with the name of an unfinished one, "NAME.part-PID-N", and returns its path.
+fs::path create_unfinished(const fs::path& name) {
+  for (int attempt = 0;; ++attempt) {
+    const fs::path path =
+        name.string() + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
+    if (fs::create_directory(path)) return path;
+  }
+}
+
+/// Removes the folders "NAME.part-PID-N" of new runs whose processes no longer exist. folder: path of NAME.
+void remove_unfinished_folders(const fs::path& folder) {
+  std::vector<fs::path> unfinished;
+  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent)) {
+    const std::string name = entry.path().filename().string();
+    const int process = writing_process(name);
+    if (process < 0 || finished_name(name) != folder.filename() || process_exists(process)) continue;
+    if (!fs::is_directory(entry.symlink_status())) continue;
+    const std::vector<fs::path> files = files_of(entry.path());
+    if (std::all_of(files.begin(), files.end(), is_run_file)) unfinished.push_back(entry.path());
+  }
+  for (const fs::path& path : unfinished) fs::remove_all(path);
+}
+
 }  // namespace
 
 // The lock file, locked by flock: the system releases the lock whenever the process ends.
@@ -44,16 +97,10 @@ class RunFolder::Lock {
  public:
   explicit Lock(const fs::path& folder) : path_(folder / kLockFile) {
     for (;;) {
-      descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+      descriptor_ =
+          retry([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666); });
       if (descriptor_ < 0) throw_file_fault(errno, "write", path_);
-      if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        char owner[32] = "";
-        const ssize_t length = ::pread(descriptor_, owner, sizeof owner - 1, 0);
-        ::close(descriptor_);
-        throw OutputRefused("the output folder " + folder.string() + " is in use by another run (process " +
-                            (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
-                            ")");
-      }
+      if (retry([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); }) != 0) refuse(errno, folder);
       // If the previous owner has just removed the file, this lock is on a file without a name. In this case
       // the loop tries again.
       struct stat locked {
@@ -64,13 +111,16 @@ class RunFolder::Lock {
       ::close(descriptor_);
     }
     const std::string owner = std::to_string(::getpid());
-    if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, owner.data(), owner.size(), 0) < 0) {
+    if (retry([&] { return ::ftruncate(descriptor_, 0); }) != 0 ||
+        retry([&] { return ::pwrite(descriptor_, owner.data(), owner.size(), 0); }) < 0) {
       const int error = errno;
       ::unlink(path_.c_str());
       ::close(descriptor_);
       throw_file_fault(error, "write", path_, owner.size());
     }
   }
+  /// Sets the path of the lock file after its folder has been renamed.
+  void moved_to(const fs::path& folder) { path_ = folder / kLockFile; }
   ~Lock() {
     ::unlink(path_.c_str());
     ::close(descriptor_);
@@ -79,11 +129,34 @@ class RunFolder::Lock {
   Lock& operator=(const Lock&) = delete;
 
  private:
+  /// Throws the fault of a lock that another process has or that the file system refuses.
+  [[noreturn]] void refuse(int error, const fs::path& folder) {
+    if (error == EWOULDBLOCK) {
+      char owner[32] = "";
+      const ssize_t length = retry([&] { return ::pread(descriptor_, owner, sizeof owner - 1, 0); });
+      ::close(descriptor_);
+      throw OutputRefused("the output folder " + folder.string() + " is in use by another run (process " +
+                          (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
+                          ")");
+    }
+    ::unlink(path_.c_str());
+    ::close(descriptor_);
+    const bool no_locks = error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS;
+    throw std::system_error(
+        error, std::generic_category(),
+        "cannot lock " + path_.string() +
+            (no_locks ? " (the file system of this folder does not lock files, and without a lock two runs "
+                        "could write the same files; choose a folder on a local disk with -o)"
+                      : ""));
+  }
+
   fs::path path_;
   int descriptor_ = -1;
 };
 
-RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene,
+                     const WriteOptions& write_options)
+    : folder_(std::move(folder)) {
   if (folder_.filename().empty() && folder_.has_parent_path())
     folder_ = folder_.parent_path();  // "out/" is "out"
   const fs::file_status status = fs::symlink_status(folder_);
@@ -95,30 +168,121 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
   if (!fs::exists(status)) {
     if (existing == Existing::resume)
       throw OutputRefused("there is no run to resume: the folder " + folder_.string() + " does not exist");
-    fs::create_directories(folder_);
-    lock_ = std::make_unique<Lock>(folder_);
+    create(write_options);
     return;
   }
+  const bool leftovers = refuse_unless_allowed(existing, scene);
+  lock_ = std::make_unique<Lock>(folder_);
+  refuse_unless_allowed(existing, scene);  // again: a run may have begun and ended before the lock
+  remove_unfinished_files();
+  complete_beginning();
+  if (has_run() && existing == Existing::resume) return;
+  if (write_options) write_options(folder_ / kNewRunFile);
+  if (existing == Existing::resume || leftovers)
+    note_ = "no run had begun in " + folder_.string() + "; the run starts at time 0";
+}
 
-  bool empty = true, ours = exists_at_all(folder_ / kRunFile);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-    if (entry.path().filename() != kLockFile) empty = false;
-  if (!empty && existing == Existing::refuse)
+/// Creates the folder, with the lock and the options.
+void RunFolder::create(const WriteOptions& write_options) {
+  if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path());
+  remove_unfinished_folders(folder_);
+  const fs::path unfinished = create_unfinished(folder_);
+  try {
+    lock_ = std::make_unique<Lock>(unfinished);
+    if (write_options) write_options(unfinished / kNewRunFile);
+    std::error_code error;
+    fs::rename(unfinished, folder_, error);
+    if (error == std::errc::directory_not_empty || error == std::errc::file_exists)
+      throw OutputRefused("another process has created the output folder " + folder_.string());
+    if (error) throw fs::filesystem_error("cannot rename", unfinished, folder_, error);
+    lock_->moved_to(folder_);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
+    throw;
+  }
+}
+
+/// Throws OutputRefused unless the folder is empty, contains only leftovers of killed processes, or contains
+/// a run that may be resumed or replaced. Returns whether there are only leftovers.
+bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) const {
+  bool leftovers = false, others = false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    if (is_leftover(entry.path().filename()))
+      leftovers = true;
+    else
+      others = true;
+  }
+  if (!others) return leftovers;
+  const bool ours = !begun_run_file(folder_).empty();
+  if (existing == Existing::refuse)
     throw OutputRefused("the output folder " + folder_.string() + " is not empty; " +
                         (ours ? "--resume continues the run in it, --force replaces it by a new run"
                               : "choose another with -o"));
-  if (!empty && !ours)
+  if (!ours)
     throw OutputRefused("the output folder " + folder_.string() +
                         " is not empty and contains no run of pliant (no " + kRunFile +
                         "); choose another with -o");
-  if (existing == Existing::resume && !ours)
-    throw OutputRefused("there is no run to resume in the folder " + folder_.string());
-  lock_ = std::make_unique<Lock>(folder_);
-  if (empty || existing != Existing::force) return;
-  if (!scene.empty() && is_in(scene, folder_)) {
+  if (existing == Existing::force && !scene.empty() && is_in(scene, folder_))
     throw OutputRefused("the scene " + scene.string() + " is in the output folder " + folder_.string() +
                         ", whose files would be removed; choose another folder with -o");
+  return false;
+}
+
+/// Removes unfinished files. In the folders of frames, other processes may write: there, only the files of
+/// processes that no longer exist are removed.
+void RunFolder::remove_unfinished_files() {
+  std::vector<fs::path> unfinished;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+    if (is_unfinished(entry.path().filename())) unfinished.push_back(entry.path());
+  for (const char* inner : {kMeshFolder, kFrameFolder}) {
+    if (!fs::is_directory(fs::symlink_status(folder_ / inner))) continue;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / inner)) {
+      const std::string name = entry.path().filename().string();
+      const int process = writing_process(name);
+      if (process >= 0 && is_run_file(fs::path(inner) / name) && !process_exists(process))
+        unfinished.push_back(entry.path());
+    }
   }
+  for (const fs::path& path : unfinished) fs::remove_all(path);
+}
+
+bool RunFolder::has_run() const {
+  return exists_at_all(folder_ / kRunFile);
+}
+
+fs::path RunFolder::new_run() {
+  new_run_ = create_unfinished(folder_ / kNewRun);
+  return new_run_;
+}
+
+void RunFolder::begin_new_run() {
+  sync_folder(new_run_);
+  fs::rename(new_run_, folder_ / kWholeNewRun);
+  new_run_.clear();
+  sync_folder(folder_);
+  complete_beginning();
+}
+
+/// Completes the replacement of an old run by a new one, from the step at which a process was killed.
+void RunFolder::complete_beginning() {
+  const fs::path whole = folder_ / kWholeNewRun, moving = folder_ / kMovingNewRun;
+  if (exists_at_all(whole)) {
+    remove_old_run();
+    fs::rename(whole, moving);
+  }
+  if (exists_at_all(folder_ / kRunFile)) fs::remove(folder_ / kNewRunFile);
+  if (!exists_at_all(moving)) return;
+  for (const fs::path& file : files_of(moving))
+    if (file != kRunFile) fs::rename(moving / file, folder_ / file);
+  if (exists_at_all(moving / kRunFile)) fs::rename(moving / kRunFile, folder_ / kRunFile);
+  fs::remove(moving);
+  fs::remove(folder_ / kNewRunFile);
+}
+
+/// Removes the files of the old run, run.json first: the others alone are not a run.
+void RunFolder::remove_old_run() {
+  fs::remove(folder_ / kRunFile);
   for (const fs::path& file : files_of(folder_))
     if (is_run_file(file) && file != kLockFile) fs::remove(folder_ / file);
   for (const char* inner : {kMeshFolder, kFrameFolder}) {
@@ -127,7 +291,22 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
   }
 }
 
-RunFolder::~RunFolder() = default;
+RunFolder::~RunFolder() {
+  try {
+    if (!new_run_.empty()) fs::remove_all(new_run_);
+    if (has_run()) fs::remove(folder_ / kNewRunFile);
+  } catch (const std::exception&) {
+    // The next run that locks the folder removes these files.
+  }
+}
+
+fs::path find_run_file(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return folder / kRunFile;
+  const fs::path begun = begun_run_file(folder);
+  if (!begun.empty()) return begun;
+  const fs::path options = folder / kNewRunFile;
+  return exists_at_all(options) ? options : fs::path();
+}
 
 void make_subfolder(const fs::path& folder) {
   const fs::file_status status = fs::symlink_status(folder);

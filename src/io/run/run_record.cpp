@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <system_error>
 
 #include <nlohmann/json.hpp>
 
 #include <pliant/io/format/whole_file.h>
 #include <pliant/io/recording.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/scene/json/text_file.h>
 
 namespace pliant {
@@ -67,7 +66,42 @@ void RunRecord::add_file(const std::string& name) {
   if (std::find(files.begin(), files.end(), name) == files.end()) files.push_back(name);
 }
 
+void RunRecord::set_checksum(const std::string& name, std::uint32_t checksum) {
+  for (auto& [file, known] : checksums)
+    if (file == name) {
+      known = checksum;
+      return;
+    }
+  checksums.emplace_back(name, checksum);
+}
+
+std::string RunRecord::trajectory_hash() const {
+  std::string hash;
+  for (const char* table : {kCoordinatesFile, kVelocitiesFile})
+    for (const auto& [file, checksum] : checksums)
+      if (file == table) hash += crc32_text(checksum);
+  return hash;
+}
+
 namespace {
+
+std::string dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Returns the checksum of run.json, which covers its text without the checksum itself.
+std::string check_of(const Json& json) {
+  Json others = json;
+  others.erase("check");
+  const std::string text = dump(others);
+  return crc32_text(crc32_after(0, text.data(), text.size()));
+}
+
+Json json_of(const Checksums& checksums) {
+  Json object = Json::object();
+  for (const auto& [file, checksum] : checksums) object[file] = crc32_text(checksum);
+  return object;
+}
 
 Json options_of(const RunRecord& r) {
   return {{"end", r.end},
@@ -177,7 +211,10 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["skipped"] = r.skipped;
   json["notes"] = r.notes;
   json["files"] = r.files;
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["trajectory_hash"] = r.trajectory_hash();
+  json["checksums"] = json_of(r.checksums);
+  json["check"] = check_of(json);
+  const std::string text = dump(json) + "\n";
   write_whole_file(file, text.data(), text.size(), Durable::yes);
 }
 
@@ -266,15 +303,25 @@ void read_monitors(const Json& monitors, RunRecord& r) {
   if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
 }
 
+void read_checksums(const Json& checksums, RunRecord& r) {
+  for (const auto& [file, checksum] : checksums.items())
+    r.set_checksum(file,
+                   static_cast<std::uint32_t>(std::stoul(checksum.template get<std::string>(), nullptr, 16)));
+}
+
 }  // namespace
 
 RunRecord read_run_record(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream)
-    throw FileError(FileError::Reason::kMissing,
-                    "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
+  std::string text;
   try {
-    const Json json = Json::parse(stream);
+    text = read_whole_file(file);
+  } catch (const std::system_error& fault) {
+    if (fault.code() != std::errc::no_such_file_or_directory && fault.code() != std::errc::not_a_directory)
+      throw;
+    throw FileError(FileError::Reason::kMissing, std::string("there is no run: ") + fault.what());
+  }
+  try {
+    const Json json = Json::parse(text);
     RunRecord r;
     const std::string status = json.at("status");
     const auto found = std::find(kStatus.begin(), kStatus.end(), status);
@@ -292,11 +339,14 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     json.at("skipped").get_to(r.skipped);
     json.at("notes").get_to(r.notes);
     json.at("files").get_to(r.files);
+    read_checksums(json.at("checksums"), r);
+    if (json.at("check") != check_of(json))
+      throw RecordingMismatch(file.string() + " is damaged: its checksum does not match");
     return r;
   } catch (const nlohmann::json::exception& fault) {
     throw RecordingMismatch(file.string() + " is damaged: " + without_tag(fault.what()));
   } catch (const std::logic_error&) {
-    throw RecordingMismatch(file.string() + " is damaged: its scene hash is not a number");
+    throw RecordingMismatch(file.string() + " is damaged: a hash or checksum in it is not a number");
   }
 }
 

@@ -36,6 +36,14 @@ std::string nearest_file(const fs::path& path) {
                                                     std::to_string(max_bytes) + " bytes)");
 }
 
+/// Opens a file. Repeats the call if a signal interrupts it.
+std::FILE* open_to_read(const std::string& path) {
+  for (;;) {
+    std::FILE* const file = std::fopen(path.c_str(), "rb");
+    if (file != nullptr || errno != EINTR) return file;
+  }
+}
+
 }  // namespace
 
 std::string read_text_file(const std::string& path, std::size_t max_bytes) {
@@ -56,9 +64,8 @@ std::string read_text_file(const std::string& path, std::size_t max_bytes) {
         refuse_size(path, "the file has " + std::to_string(size) + " bytes", max_bytes);
     }
   }
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
-      standard_input ? nullptr : std::fopen(path.c_str(), "rb"),
-      [](std::FILE* f) { return f ? std::fclose(f) : 0; });
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(standard_input ? nullptr : open_to_read(path),
+                                                         [](std::FILE* f) { return f ? std::fclose(f) : 0; });
   if (!standard_input && !opened) refuse(errno);
   std::FILE* const file = standard_input ? stdin : opened.get();
 
@@ -69,6 +76,10 @@ std::string read_text_file(const std::string& path, std::size_t max_bytes) {
     const std::size_t n = std::fread(block.data(), 1, block.size(), file);
     text.append(block.data(), n);
     if (text.size() > max_bytes) refuse_size(path, "more bytes than allowed", max_bytes);
+    if (std::ferror(file) && errno == EINTR) {  // a signal interrupted the call
+      std::clearerr(file);
+      continue;
+    }
     if (n < block.size()) {
       if (std::ferror(file)) refuse(errno == 0 ? EIO : errno);
       return text;

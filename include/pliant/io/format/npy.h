@@ -5,12 +5,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace pliant {
 
 /// Number of columns that denotes a vector: one number per row, shape (n,).
 inline constexpr int kNpyVector = -1;
+
+/// Returns the header of a file with this number of columns (or kNpyVector) and rows.
+std::string npy_header(int columns, std::int64_t rows);
 
 /// Writes a table. All members throw std::system_error with path and reason.
 class NpyWriter {
@@ -28,7 +32,7 @@ class NpyWriter {
   void append(const double* row);
   /// Writes the pending rows, then the header with the number of all rows.
   void flush();
-  /// Flushes and waits until the data is on the disk.
+  /// Flushes and waits until the data is on the disk. Does nothing if all data is there already.
   void flush_to_disk();
 
   std::int64_t rows() const { return rows_; }
@@ -43,6 +47,7 @@ class NpyWriter {
   int descriptor_;
   int columns_;
   std::int64_t rows_, rows_in_file_;
+  bool on_disk_ = false;  // whether nothing was written since the last flush_to_disk()
   std::vector<double> pending_;
 };
 
@@ -60,6 +65,7 @@ class NpyReader {
   std::int64_t rows() const { return rows_; }
   /// Returns the number of columns, or kNpyVector.
   int columns() const { return columns_; }
+  const std::filesystem::path& path() const { return path_; }
   /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()) to `numbers`, row after row.
   /// Throws std::out_of_range if there are no such rows.
   void read(std::int64_t row, double* numbers, std::int64_t count = 1) const;

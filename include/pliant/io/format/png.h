@@ -12,6 +12,10 @@ namespace pliant {
 /// std::system_error or std::runtime_error with path and reason if the file cannot be written.
 void write_png(const Image& image, const std::filesystem::path& path);
 
+/// Checks the structure of a PNG file and the checksums of its chunks. Throws std::system_error if the file
+/// cannot be read, std::runtime_error with path and reason if it is damaged.
+void check_png(const std::filesystem::path& path);
+
 /// Returns the version of the PNG library in use.
 const char* png_library_version();
 

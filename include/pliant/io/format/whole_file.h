@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace pliant {
@@ -12,6 +13,10 @@ namespace pliant {
 /// Whether a file must reach the disk before it is renamed. With yes, the file survives a power cut. With
 /// Durable::no, writing is faster, and the file survives only a crash of the process.
 enum class Durable { no, yes };
+
+/// Waits until the names of the files in a folder are on the disk: after a power cut, a file that was
+/// replaced before may otherwise be the old one. Throws std::system_error.
+void sync_folder(const std::filesystem::path& folder);
 
 /// A file that is written piece by piece. All members throw std::system_error with path and reason (for a
 /// full disk also the needed and free bytes). In this case the target is unchanged and the temporary file is
@@ -37,5 +42,8 @@ class WholeFile {
 /// Writes a file with exactly these bytes; an existing file is replaced.
 void write_whole_file(const std::filesystem::path& path, const void* bytes, std::size_t size,
                       Durable durable = Durable::no);
+
+/// Returns the bytes of a file. Throws std::system_error.
+std::string read_whole_file(const std::filesystem::path& path);
 
 }  // namespace pliant

@@ -23,6 +23,9 @@
 
 namespace pliant {
 
+/// Wall time between two checkpoints, s, unless RunOptions gives another one.
+inline constexpr double kStandardCheckpointInterval = 30;
+
 struct RunOptions {
   std::filesystem::path folder;
   Existing existing = Existing::refuse;
@@ -31,6 +34,8 @@ struct RunOptions {
   std::vector<std::string> command;  ///< the command line, for run.json
   std::string graphics;              ///< graphics library, for run.json; empty without pictures
   double remedy_seconds = 2;         ///< wall time of the trials after a failure, see find_remedy(), s
+  /// Wall time between two checkpoints, s; with 0, a checkpoint is written after every step.
+  double checkpoint_every = kStandardCheckpointInterval;
   std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
 };
 
@@ -39,9 +44,10 @@ struct RunOptions {
 class Run {
  public:
   /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
-  /// run locks and reads the folder. Throws std::invalid_argument (a bad scene), OutputRefused,
-  /// RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame rate, or a
-  /// damaged recording), std::system_error. The scene must outlive the run.
+  /// run locks and reads the folder, and compares all recorded numbers with their checksums. If no run has
+  /// begun in the folder of a resumed run, a new run begins. Throws std::invalid_argument (a bad scene),
+  /// OutputRefused, RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame
+  /// rate, or a damaged recording), std::system_error. The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
@@ -74,15 +80,22 @@ class Run {
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
-  /// Writes the first state and the files of a new run.
-  void begin_recording();
-  /// Checks that the recorded run belongs to this scene, and sets the simulation to the last recorded state.
-  void resume_recording();
+  /// Writes the first state and the files of a new run into a new folder, and puts them in place together.
+  void begin_recording(const StableStep& stable);
+  void set_identity();
+  void open_tables(std::int64_t states);
+  void write_inputs(const std::filesystem::path& folder);
+  void mend_inputs();
+  /// Checks that the recorded run belongs to this scene and is not damaged, and sets the simulation to the
+  /// last state that was recorded or saved.
+  void resume_recording(const StableStep& stable);
   void check_resumable() const;
+  void check_numbers(const Recording& recorded, std::int64_t states) const;
   void set_last_state(const Recording& recorded, std::int64_t& keep);
+  bool continue_from_checkpoint(const Recording& recorded, std::int64_t keep);
+  void set_options();
   void describe(const StableStep& stable);
   void note_setup(const StableStep& stable);
-  void list_files();
   void record_state();
   Ledger checked_ledger();
   void record_last_valid_state();
@@ -93,6 +106,11 @@ class Run {
   void save(bool to_disk = false);
   /// Writes trajectory.csv and, if the scene requests them, the tables of contacts.
   void write_tables();
+  void write_layout(const std::filesystem::path& folder);
+  void add_whole_file(const std::filesystem::path& folder, const std::string& name);
+  void save_checkpoint();
+  void update_record();
+  void count_work();
   void write_record();
   void fail(const std::string& message) noexcept;
   /// Shows a note. Adds the note to run.json, unless it is there already.
@@ -125,7 +143,7 @@ class Run {
   std::vector<bool> reported_acting_;
   StepCounters earlier_steps_;  // counters of earlier sessions of a resumed run
   Counters earlier_counters_;
-  std::chrono::steady_clock::time_point saved_;
+  std::chrono::steady_clock::time_point started_, saved_, checkpointed_;
   bool stopped_ = false, reported_ground_ = false;
 };
 

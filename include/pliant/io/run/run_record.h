@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/io/checksums.h>
 #include <pliant/io/run/build_info.h>
 #include <pliant/io/run/estimate_error.h>
 #include <pliant/simulate/energy_monitor.h>
@@ -73,15 +74,25 @@ struct RunRecord {
   /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
   std::vector<std::string> files;
 
+  /// Checksums of the files that are in the folder for the whole run: of the numbers of tables with the
+  /// recorded states so far, and of all bytes of other files.
+  Checksums checksums;
+
   /// Adds to the wall time of a stage.
   void add_seconds(const std::string& stage, double seconds);
   /// Adds a file or a series of files, unless it is listed already.
   void add_file(const std::string& name);
+  /// Adds or replaces the checksum of a file.
+  void set_checksum(const std::string& name, std::uint32_t checksum);
+  /// Returns the hash of the recorded motion: the CRC-32 of q.npy and that of v.npy, as 16 hexadecimal
+  /// digits.
+  std::string trajectory_hash() const;
 };
 
 /// Writes run.json (whole or absent, see io/format/whole_file.h). Throws std::system_error.
 void write_run_record(const std::filesystem::path& file, const RunRecord& record);
-/// Reads run.json. Throws FileError if there is none, RecordingMismatch if it is damaged.
+/// Reads run.json and compares it with its checksum. Throws FileError if there is none, RecordingMismatch if
+/// it is damaged.
 RunRecord read_run_record(const std::filesystem::path& file);
 
 }  // namespace pliant

@@ -1,0 +1,38 @@
+// Checkpoints: complete states between two recorded states, from which a killed run is resumed. A run writes
+// one of them from time to time. A folder has at most two; a new checkpoint replaces the older one, so that
+// one remains if the newest is damaged.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <pliant/body/model.h>
+#include <pliant/body/state.h>
+
+namespace pliant {
+
+struct Checkpoint {
+  std::int64_t states = 0;  ///< number of states that were recorded before
+  State state;
+};
+
+/// Writes a checkpoint in place of the older of the two of a folder, so that it survives a power cut. Throws
+/// std::system_error.
+void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
+
+/// A checkpoint that was found, and texts for the user about those that are damaged.
+struct FoundCheckpoint {
+  std::optional<Checkpoint> checkpoint;
+  std::string damage;
+};
+/// Returns the latest checkpoint of a folder that is undamaged, is after exactly `states` recorded states,
+/// and is not later than the time `end`, s.
+FoundCheckpoint find_checkpoint(const std::filesystem::path& folder, const Model& model, std::int64_t states,
+                                double end);
+
+/// Removes the checkpoints of a run that has reached its end.
+void remove_checkpoints(const std::filesystem::path& folder);
+
+}  // namespace pliant

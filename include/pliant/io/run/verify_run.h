@@ -1,0 +1,41 @@
+// Verification of the folder of a run: all files are there and as they were written.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <pliant/io/recording.h>
+#include <pliant/io/run/progress.h>
+#include <pliant/io/run/run_record.h>
+#include <pliant/scene/scene.h>
+
+namespace pliant {
+
+struct Verification {
+  std::vector<std::string> checked;  ///< what was checked, one text per kind of file
+  std::vector<std::string> faults;   ///< what is wrong, one text per file; empty if all is right
+};
+
+/// A run whose files are verified.
+struct VerifiedRun {
+  std::filesystem::path folder;
+  const RunRecord& record;
+  const Scene& scene;
+  const Model& model;
+  const Recording& recording;
+  std::int64_t frames;  ///< number of frames of the run
+};
+
+/// Compares the files of a run that have a checksum in run.json, except the tables, with this checksum.
+void verify_whole_files(const std::filesystem::path& folder, const RunRecord& record, Verification& result);
+
+/// Compares all numbers of the tables with their checksums, the checksums with those in run.json, and each
+/// state with its check number.
+void verify_tables(const VerifiedRun& run, Verification& result);
+
+/// Checks that each frame exists for which run.json names files. A mesh file must have the bytes that the
+/// recording gives, and a picture must be undamaged. Throws Interrupted.
+void verify_frames(const VerifiedRun& run, Progress& progress, Verification& result);
+
+}  // namespace pliant

@@ -1,0 +1,213 @@
+// The beginning of a run: a new one, or one that is resumed.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/format/ply.h>
+#include <pliant/io/format/whole_file.h>
+#include <pliant/io/run/checkpoint.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/run_files.h>
+#include <pliant/io/trajectory.h>
+#include <pliant/scene/mesh_file.h>
+
+namespace pliant {
+namespace {
+
+/// Throws RecordingMismatch if a setting of a resumed run has changed. hint: appended to the message.
+template <class Value>
+void require_same(const char* name, const Value& recorded, const Value& now, const std::string& hint = "") {
+  if (recorded == now) return;
+  std::string message = std::string("cannot resume this run: ") + name + " was ";
+  if constexpr (std::is_arithmetic_v<Value>)
+    message += number_text(recorded) + " and is now " + number_text(now);
+  else
+    message += recorded + " and is now " + now;
+  throw RecordingMismatch(message + hint);
+}
+
+}  // namespace
+
+/// Sets the properties of the run record that a resumed run must have too.
+void Run::set_identity() {
+  record_.build = build_info();
+  record_.scene_hash = scene_->hash;
+  record_.requested_step = scene_->tolerance > 0 ? 0 : scene_->step;
+  record_.tolerance = scene_->tolerance;
+  record_.step = schedule_.step();
+  record_.frame_rate = scene_->frame_rate;
+  record_.integrator = simulation_->integrator().name();
+  record_.requested_integrator = scene_->integrator;
+}
+
+/// Adds a finished file and its checksum to the run record.
+void Run::add_whole_file(const std::filesystem::path& folder, const std::string& name) {
+  record_.add_file(name);
+  record_.set_checksum(name, crc32_of_file(folder / name));
+}
+
+/// Writes the scene and the meshes of its obstacles.
+void Run::write_inputs(const std::filesystem::path& folder) {
+  if (!scene_->document.empty()) {
+    write_whole_file(folder / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
+    add_whole_file(folder, kSceneFile);
+  }
+  for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
+    const MeshFile& mesh = scene_->obstacles[i].mesh;
+    if (mesh.triangles.cols() == 0) continue;
+    const std::string& name = scene_->body.contact.obstacles[i].name;
+    const std::string file = recorded_mesh_name(name);
+    write_ply(folder / file, {{name, scene_->obstacles[i].color, node_mesh(mesh.triangles, mesh.vertices)}});
+    add_whole_file(folder, file);
+  }
+}
+
+/// Writes the scene and the meshes of its obstacles again if they are not as they were. The scene of this
+/// session has the same hash as that of the recorded run.
+void Run::mend_inputs() {
+  for (const auto& [file, checksum] : record_.checksums) {
+    if (file != kSceneFile && !is_recorded_mesh(file)) continue;
+    const std::filesystem::path path = *folder_ / file.c_str();
+    if (std::filesystem::exists(path) && crc32_of_file(path) == checksum) continue;
+    note(path.string() + " was damaged or changed; it is written again");
+    write_inputs(folder_->path());
+    return;
+  }
+}
+
+void Run::write_layout(const std::filesystem::path& folder) {
+  pliant::write_layout(folder, simulation_->model(), schedule_,
+                       TrajectoryTable(*scene_, *simulation_).columns(), scene_->contacts);
+  add_whole_file(folder, kLayoutFile);
+}
+
+/// Opens the tables of the folder, and removes the rows after the first `states` recorded states.
+void Run::open_tables(std::int64_t states) {
+  const std::filesystem::path& folder = folder_->path();
+  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::resume(folder, simulation_->model(), states));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::resume(folder, states));
+}
+
+void Run::begin_recording(const StableStep& stable) {
+  if (schedule_.step() != record_.requested_step) {
+    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
+         number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
+  }
+  describe(stable);
+  const std::filesystem::path place = folder_->new_run();
+  record_.add_file(kRunFile);
+  write_inputs(place);
+  write_layout(place);
+  const Model& model = simulation_->model();
+  writer_ = std::make_unique<RecordingWriter>(
+      RecordingWriter::create(place, model, simulation_->clusters() != nullptr));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(place));
+  record_state();
+  flush(true);
+  update_record();
+  write_run_record(place / kRunFile, record_);
+  folder_->begin_new_run();
+  open_tables(writer_->rows());  // at their new paths
+  saved_ = std::chrono::steady_clock::now();
+}
+
+/// Throws RecordingMismatch if build, scene or settings differ from those of the recorded run.
+void Run::check_resumable() const {
+  for (const auto& [name, value] : build_info()) {
+    const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
+                                       [&key = name](const auto& entry) { return entry.first == key; });
+    require_same(("its program's " + name).c_str(),
+                 recorded == record_.build.end() ? "unknown" : recorded->second, value,
+                 "; only the build that began the run reproduces its numbers");
+  }
+  if (record_.scene_hash != scene_->hash)
+    throw RecordingMismatch("cannot resume this run: the scene, its meshes or its --set values have changed");
+  require_same("the integrator", record_.requested_integrator, scene_->integrator);
+  require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
+  require_same("the tolerance", record_.tolerance, scene_->tolerance);
+  if (scene_->tolerance == 0) require_same("the step", record_.requested_step, scene_->step);
+}
+
+/// Throws RecordingMismatch, naming the files, if numbers of the first `states` recorded states have changed
+/// since they were written.
+void Run::check_numbers(const Recording& recorded, std::int64_t states) const {
+  std::vector<std::string> damage = recorded.damage();
+  if (scene_->contacts)
+    for (std::string& text : contact_checksums(folder_->path()).damage(states))
+      damage.push_back(std::move(text));
+  if (damage.empty()) return;
+  std::string message = "cannot resume this run: ";
+  for (const std::string& text : damage) message += (&text == damage.data() ? "" : "; ") + text;
+  throw RecordingMismatch(message + ". Restore the damaged file, or simulate again with --force");
+}
+
+/// Sets the simulation to a checkpoint that is later than the first `keep` recorded states. Returns false if
+/// there is none.
+bool Run::continue_from_checkpoint(const Recording& recorded, std::int64_t keep) {
+  if (keep == 0) return false;
+  FoundCheckpoint found = find_checkpoint(folder_->path(), simulation_->model(), keep, schedule_.end());
+  if (!found.damage.empty()) note(found.damage + "; the run continues from an earlier state");
+  const double last = recorded.time(keep - 1);
+  if (!found.checkpoint || !(found.checkpoint->state.time() > last)) return false;
+  recorded_time_ = last;
+  simulation_->set_state(std::move(found.checkpoint->state));
+  return true;
+}
+
+/// Sets the simulation to the last recorded state that an uninterrupted run would reach, or to a later
+/// checkpoint. keep: on call, the number of recorded states; on return, the number of these that an
+/// uninterrupted run would record.
+void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
+  // With error control, the last step may have been shortened by the end of the run. If the new end is later,
+  // this step is removed and repeated.
+  if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
+      scene_->end > record_.end)
+    --keep;
+  if (keep == 0 || continue_from_checkpoint(recorded, keep)) return;
+  State last = recorded.state(keep - 1);
+  if (last.time() > schedule_.end() * (1 + 1e-9))
+    throw RecordingMismatch("cannot resume this run: it has reached t = " + number_text(last.time()) +
+                            " s, beyond the requested end of " + number_text(scene_->end) + " s");
+  // An uninterrupted run does not record a state that was recorded only because the run ended there.
+  const bool in_unbroken =
+      scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
+                            : schedule_.records(last.step);
+  if (in_unbroken)
+    recorded_time_ = last.time();
+  else
+    --keep;
+  simulation_->set_state(std::move(last));
+}
+
+void Run::resume_recording(const StableStep& stable) {
+  record_ = read_run_record(*folder_ / kRunFile);
+  check_resumable();
+  if (scene_->tolerance == 0)
+    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
+    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
+         number_text(record_.step) + " s of this run; the run ends at " + number_text(schedule_.end()) +
+         " s");
+  }
+  mend_inputs();
+  write_layout(folder_->path());
+  const Recording recorded = recording();
+  std::int64_t keep = recorded.rows();
+  if (scene_->contacts) keep = std::min(keep, contact_checksums(folder_->path()).whole_states());
+  check_numbers(recorded, keep);
+  set_last_state(recorded, keep);
+  energies_->set_range(record_.energies);
+  last_recorded_ = simulation_->state();
+  open_tables(keep);
+  if (keep == 0 && simulation_->time() == 0) record_state();
+  earlier_steps_ = record_.step_counters;
+  earlier_counters_ = record_.counters;
+  ++record_.resumed;
+  describe(stable);
+  save(true);
+}
+
+}  // namespace pliant
