@@ -11,7 +11,7 @@ pliant_minutes_tests=10
 # Each word of these lists is a package or a choice. The choice a|b,c means package a, or both b and c if the distribution
 # has no package a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
-nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
+nlohmann-json3-dev libcli11-dev libpng-dev libosmesa6|libegl1,libgl1-mesa-dri"
 # Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, and Python for
 # the tests package/scene_keys and package/house.
 pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev"

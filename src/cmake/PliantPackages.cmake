@@ -61,10 +61,6 @@ if(PLIANT_APPS)
   pliant_require(CLI11_FOUND libcli11-dev PLIANT_APPS)
   pliant_package(CLI11 VERSION ${CLI11_VERSION} TARGETS CLI11::CLI11)
 
-  find_package(assimp QUIET CONFIG)
-  pliant_require(assimp_FOUND libassimp-dev PLIANT_APPS)
-  pliant_package(assimp VERSION ${assimp_VERSION} TARGETS assimp::assimp CLIENT "assimp CONFIG")
-
   find_package(PNG QUIET)
   pliant_require(PNG_FOUND libpng-dev PLIANT_APPS)
   pliant_package(PNG VERSION ${PNG_VERSION_STRING} TARGETS PNG::PNG CLIENT "PNG")

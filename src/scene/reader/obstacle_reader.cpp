@@ -45,7 +45,11 @@ std::optional<MeshFile> read_mesh(const Reader& r, const MeshFolder& folder, Sce
   const std::filesystem::path file =
       folder.path / (folder.of_a_run ? recorded_mesh_name(r.text("name")) : r.text("mesh"));
   try {
-    return read_mesh_file(file);
+    MeshFile mesh = read_mesh_file(file);
+    std::string notes;
+    for (const std::string& note : mesh.notes) notes += "; " + note;
+    if (!notes.empty()) faults.warn(r.at("mesh"), "the mesh is cleaned" + notes);
+    return mesh;
   } catch (const FileError& fault) {
     faults.value(r.at("mesh"), fault.what());
   } catch (const std::invalid_argument& fault) {
