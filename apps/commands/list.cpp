@@ -55,7 +55,8 @@ void list_deformations() {
 
 void list_laws() {
   for (const pliant::LocalLawInfo& law : pliant::all_local_laws()) {
-    std::cout << law.name << "\n  for " << (law.shell ? "shells" : "solids") << ": " << law.meaning << "\n";
+    std::cout << law.name << "\n  for " << (law.shell ? "shells" : "solids") << ": " << law.meaning << "\n  "
+              << law.formula << "\n";
     for (const pliant::LocalLawInfo::Number& n : law.numbers) {
       const bool bounded = std::isfinite(n.min) || std::isfinite(n.max);
       std::cout << "    " << std::left << std::setw(9) << n.key << " " << std::setw(5)

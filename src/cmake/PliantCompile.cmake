@@ -34,6 +34,13 @@ if(PLIANT_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
   add_compile_definitions(PLIANT_SANITIZED)  # for tests that sanitizers slow down, and tests that count allocations
 endif()
+if(PLIANT_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang" OR NOT PLIANT_APPS OR NOT PLIANT_TESTS)
+    message(FATAL_ERROR "PLIANT_FUZZ needs Clang, PLIANT_APPS and PLIANT_TESTS; for example: "
+                        "cmake --preset asan-ubsan -DCMAKE_CXX_COMPILER=clang++ -DPLIANT_FUZZ=ON")
+  endif()
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 
 # Adds a library: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core, pliant::core and the
 # component core of the installed package. Write a header-only private library as $<BUILD_INTERFACE:...>, so that

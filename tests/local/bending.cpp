@@ -3,6 +3,8 @@
 // checks of energy_laws.h. phi is the rotation of the normal of an edge (bending.h).
 #include <pliant/local/shell/bending.h>
 
+#include <pliant/local/shell/membrane.h>
+
 #include "catch.h"
 #include "modes.h"
 
@@ -164,6 +166,83 @@ TEST_CASE("bending: for small displacements the folding energy is the linear one
   const VecX<double> dx = random_vector(draws, 3 * mesh.n_nodes() + own), f = force(linear, dx);
   CHECK((derivative(folding, with_own_coordinates(rest(mesh), VecX<double>::Zero(own)), dx) - f).norm() <=
         1e-12 * f.norm());
+}
+
+TEST_CASE("bending: a fold that passes half a turn keeps its energy, force and stiffness", "[local]") {
+  // Two triangles with a common edge. Triangle 1 turns about the edge by the angle a, and the mid-edge normal
+  // by half of this angle, relative to triangle 0. E is the energy of the angle a, for any number of turns.
+  Nodes X(4, 3);
+  X << 0, 0, 0, 0, 1, 0, -0.8, 0.4, 0, 0.9, 0.5, 0;
+  Eigen::Matrix3Xi triangles(3, 2);
+  triangles << 0, 1, 1, 0, 2, 3;
+  const ShellMesh mesh(X, triangles);
+  const FoldingBending bending(mesh, kSheet, kMass);
+  const Eigen::Index own = bending.own_inertia().size();
+  const auto folded = [&](double a) {
+    Nodes x = X;
+    x.row(3) << 0.9 * std::cos(a), 0.5, -0.9 * std::sin(a);
+    VecX<double> y = VecX<double>::Zero(own);
+    const double turns = std::round(a / (2 * kPi)), rest = a - 2 * kPi * turns;
+    y[0] = kPi * turns + fold_turn(rest).value;
+    return with_own_coordinates(x.reshaped(), y);
+  };
+  const double unit = bending.energy(folded(0.5)) / 0.25;
+  CHECK(unit > 0);
+  for (const double a :
+       {-7.0, -3.3, -3.1, -1.7, 0.3, 1.6, 2.5, 3.141, 3.142, 4.0, 6.2, 6.4, 9.4, 9.5, 12.0}) {
+    CAPTURE(a);
+    CHECK(bending.energy(folded(a)) == Approx(unit * a * a).epsilon(1e-10));
+    Draws draws(11);
+    const VecX<double> x = folded(a) + random_vector(draws, 12 + own, 0.05);
+    check_slopes(bending, x, 5e-4);
+    check_stiffness(bending, x);
+  }
+  // The force does not jump at half a turn.
+  const VecX<double> before = force(bending, folded(kPi - 1e-9)), after = force(bending, folded(kPi + 1e-9));
+  CHECK((after - before).norm() <= 1e-6 * before.norm());
+}
+
+TEST_CASE("bending: a triangle that swings about its edge beyond half a turn keeps its energy", "[local]") {
+  // Two triangles, elastic in their planes, with a soft hinge. The angular velocity of one of them about the
+  // common edge is large enough for more than half a turn against the moment of the hinge.
+  Nodes X(4, 3);
+  X << 0, 0, 0, 0, 1, 0, -0.8, 0.4, 0, 0.9, 0.5, 0;
+  Eigen::Matrix3Xi triangles(3, 2);
+  triangles << 0, 1, 1, 0, 2, 3;
+  const ShellMesh mesh(X, triangles);
+  const FoldingBending bending(mesh, {1e3, 0.3, 0.02}, kMass);
+  const StVenantKirchhoffMembrane membrane(mesh, kSheet);
+  const VecX<double> M = all_masses(bending, mesh),
+                     rest_state =
+                         with_own_coordinates(rest(mesh), VecX<double>::Zero(bending.own_inertia().size()));
+  const Eigen::Index n = rest_state.size();
+  const auto nodal = [](const VecX<double>& x) { return VecX<double>(x.head(12)); };
+  const auto energy = [&](const VecX<double>& x, const VecX<double>& v) {
+    return bending.energy(x) + membrane.energy(nodal(x)) + 0.5 * M.dot(v.cwiseAbs2());
+  };
+  const auto acceleration = [&](const VecX<double>& x) -> VecX<double> {
+    VecX<double> f = force(bending, x);
+    f.head(12) += force(membrane, nodal(x));
+    return f.cwiseQuotient(M);
+  };
+  VecX<double> x = rest_state, v = VecX<double>::Zero(n);
+  v[2 * 4 + 3] = -8;  // z of the tip, m/s
+  const double start = energy(x, v), h = 2e-5;
+  double worst = 0, least_turns = 0, most_turns = 0;
+  for (int step = 0; step < 250000; ++step) {  // RK4
+    const VecX<double> a1 = acceleration(x), a2 = acceleration(x + h / 2 * v),
+                       a3 = acceleration(x + h / 2 * v + h * h / 4 * a1),
+                       a4 = acceleration(x + h * v + h * h / 2 * a2);
+    x += h * v + h * h / 6 * (a1 + a2 + a3);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    if (step % 100 != 0) continue;
+    worst = std::max(worst, std::abs(energy(x, v) / start - 1));
+    most_turns = std::max(most_turns, x[12]);
+    least_turns = std::min(least_turns, x[12]);
+  }
+  INFO("y/pi from " << least_turns / kPi << " to " << most_turns / kPi << ", energy error " << worst);
+  CHECK(least_turns < -1.2 * kPi);
+  CHECK(worst <= 1e-9);
 }
 
 TEST_CASE("bending: an irregular sheet rolled to half a cylinder has the energy of the cylinder", "[local]") {

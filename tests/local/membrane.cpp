@@ -53,6 +53,7 @@ TEST_CASE("membranes: derivatives, matrix, threads, frequency bound, rest and ri
   for (const double nu : {-0.4, 0.0, 0.3, 0.5}) {
     check_laws<StVenantKirchhoffSheet>(nu);
     check_laws<NeoHookeanSheet>(nu);
+    if (nu >= 0) check_laws<NeoHookeanLogSheet>(nu);
   }
 }
 
@@ -81,6 +82,15 @@ TEST_CASE("membranes: homogeneous stretch has the energy and the stress of the c
       const double a = low + (high - low) / 3, b = high - (high - low) / 3;
       (density(a) < density(b) ? high : low) = density(a) < density(b) ? b : a;
     }
+    // With ln J: mu (l3^2 - 1) + lambda ln J = 0.
+    const double lambda = nu < 0.5 ? E * nu / ((1 + nu) * (1 - 2 * nu)) : 0;
+    double h = 1;
+    for (int i = 0; nu < 0.5 && i < 60; ++i)
+      h -= (mu * (h * h - 1) + lambda * std::log(l1 * l2 * h)) / (2 * mu * h + lambda / h);
+    if (nu == 0.5) h = 1 / (l1 * l2);
+    const double log_J = std::log(l1 * l2 * h), sum = l1 * l1 + l2 * l2 + h * h - 3;
+    CHECK(NeoHookeanLogMembrane(mesh, sheet).energy(stretched(l1, l2)) ==
+          Approx(t * (mu / 2 * sum - mu * log_J + lambda / 2 * log_J * log_J)).epsilon(1e-12));
     const double l3 = 1 / (l1 * l2);
     const double expected = nu < 0.5 ? density(low) : 0.5 * mu * (l1 * l1 + l2 * l2 + l3 * l3 - 3);
     CHECK(NeoHookeanMembrane(mesh, sheet).energy(stretched(l1, l2)) == Approx(t * expected).epsilon(1e-10));
@@ -102,6 +112,35 @@ TEST_CASE("membranes: homogeneous strain exerts no force on inner nodes", "[loca
   };
   check(StVenantKirchhoffMembrane(mesh, {1e5, 0.3, 0.01}));
   check(NeoHookeanMembrane(mesh, {1e5, 0.3, 0.01}));
+  check(NeoHookeanLogMembrane(mesh, {1e5, 0.3, 0.01}));
+}
+
+TEST_CASE(
+    "membranes: neo_hookean_log_membrane has uniaxial tension in closed form, and refuses flat triangles",
+    "[local]") {
+  // The stretch across the tension and that of the thickness are both a: mu (a^2 - 1) + lambda ln(a^2 s) = 0,
+  // and the force per width is t mu (s - a^2/s).
+  Draws draws(6);
+  const double E = 1e5, nu = 0.4, t = 0.01, mu = E / (2 * (1 + nu)),
+               lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+  const ShellMesh mesh = irregular_sheet(4, 4, 1, 1, draws);
+  const NeoHookeanLogMembrane membrane(mesh, {E, nu, t});
+  for (const double s : {0.5, 1.2, 3.0}) {
+    double a = 1;
+    for (int i = 0; i < 60; ++i)
+      a -= (mu * (a * a - 1) + lambda * std::log(a * a * s)) / (2 * mu * a + 2 * lambda / a);
+    const auto stretched = [&](double along) {
+      return membrane.energy(
+          field(mesh, [&](const Vec3<double>& X) { return Vec3<double>(along * X[0], a * X[1], 0); }));
+    };
+    const double force =
+        first_derivative([&](long double h) { return stretched(s + static_cast<double>(h)); }, 1e-3);
+    CHECK(force == Approx(t * mu * (s - a * a / s)).epsilon(1e-9));
+  }
+  const VecX<double> flat = field(mesh, [](const Vec3<double>& X) { return Vec3<double>(X[0], 0, 0); });
+  CHECK_THROWS_WITH(membrane.energy(flat), has_text("has no area"));
+  CHECK_THROWS_AS(force(membrane, flat), InvertedElement);
+  CHECK_THROWS_WITH(NeoHookeanLogMembrane(mesh, {E, -0.1, t}), has_text("negative Poisson's ratio"));
 }
 
 }  // namespace membrane_test

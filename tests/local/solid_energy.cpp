@@ -40,8 +40,10 @@ struct Kind {
   static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
   static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
   /// Largest random displacement. It causes strains of some tenths and may invert elements. It is smaller for
-  /// elements of 15 nodes with the law Corotated, which refuses inverted elements.
-  static constexpr double kSize = N == 15 && std::is_same_v<Law, Corotated> ? 0.01 : 0.05;
+  /// elements of 15 nodes with laws that refuse inverted elements.
+  static constexpr bool kRefusesInversion =
+      std::is_same_v<Law, Corotated> || std::is_same_v<Law, NeoHookeanLog>;
+  static constexpr double kSize = N == 15 && kRefusesInversion ? 0.01 : 0.05;
   static VecX<double> state(const SolidMesh& mesh, double size = kSize) {
     Draws draws(3);
     VecX<double> x = affine(mesh.rest, linear ? Mat3<double>::Zero().eval() : Mat3<double>::Identity().eval(),
@@ -99,13 +101,15 @@ double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
 
 }  // namespace
 
-#define PLIANT_ALL_KINDS                                                                        \
-  (Kind<LinearTetrahedron, LinearLaw>), (Kind<LinearTetrahedron, StVenantKirchhoff>),           \
-      (Kind<LinearTetrahedron, NeoHookean>), (Kind<LinearTetrahedron, Corotated>),              \
-      (Kind<QuadraticTetrahedron, LinearLaw>), (Kind<QuadraticTetrahedron, StVenantKirchhoff>), \
-      (Kind<QuadraticTetrahedron, NeoHookean>), (Kind<QuadraticTetrahedron, Corotated>),        \
-      (Kind<EnrichedTetrahedron, LinearLaw>), (Kind<EnrichedTetrahedron, StVenantKirchhoff>),   \
-      (Kind<EnrichedTetrahedron, NeoHookean>), (Kind<EnrichedTetrahedron, Corotated>)
+#define PLIANT_ALL_KINDS                                                                         \
+  (Kind<LinearTetrahedron, LinearLaw>), (Kind<LinearTetrahedron, StVenantKirchhoff>),            \
+      (Kind<LinearTetrahedron, NeoHookean>), (Kind<LinearTetrahedron, Corotated>),               \
+      (Kind<LinearTetrahedron, NeoHookeanLog>), (Kind<QuadraticTetrahedron, NeoHookeanLog>),     \
+      (Kind<EnrichedTetrahedron, NeoHookeanLog>), (Kind<QuadraticTetrahedron, LinearLaw>),       \
+      (Kind<QuadraticTetrahedron, StVenantKirchhoff>), (Kind<QuadraticTetrahedron, NeoHookean>), \
+      (Kind<QuadraticTetrahedron, Corotated>), (Kind<EnrichedTetrahedron, LinearLaw>),           \
+      (Kind<EnrichedTetrahedron, StVenantKirchhoff>), (Kind<EnrichedTetrahedron, NeoHookean>),   \
+      (Kind<EnrichedTetrahedron, Corotated>)
 
 TEMPLATE_TEST_CASE("forces are minus the gradients of the energy, derivatives are those of the forces",
                    "[solid]", PLIANT_ALL_KINDS) {
@@ -261,6 +265,47 @@ TEST_CASE("inverted elements are refused, or pushed back", "[solid]") {
   CHECK(neo_hookean.energy(affine(mesh.rest, mirror, Vec3<double>::Zero())) > neo_hookean.energy(x));
 }
 
+TEST_CASE("neo_hookean_log has infinite energy where det F reaches 0, and refuses inverted elements",
+          "[solid]") {
+  const NeoHookeanLog law(kRubber);
+  double before = 0;
+  for (const double J : {1e-1, 1e-4, 1e-16, 1e-300}) {
+    const double W = law.density(Mat3<double>(Vec3<double>(1, 1, J).asDiagonal()));
+    CHECK(W > before);
+    before = W;
+  }
+  for (const double J : {0.0, -0.5})
+    CHECK_THROWS_AS(law.density(Mat3<double>(Vec3<double>(1, 1, J).asDiagonal())), InvertedElement);
+  const SolidMesh mesh = ball(4);
+  const auto energy = Kind<LinearTetrahedron, NeoHookeanLog>::make(mesh);
+  const VecX<double> x = affine(mesh.rest, Vec3<double>(1, 1, -0.5).asDiagonal(), Vec3<double>::Zero());
+  CHECK_THROWS_WITH(force(energy, x), test::has_text("is inverted or flat (det F = -0.5)"));
+  CHECK_THROWS_AS(energy.energy(x), InvertedElement);
+  CHECK_THROWS_WITH(NeoHookeanLog(Elasticity(3, -0.1)), test::has_text("negative Poisson's ratio"));
+}
+
+TEST_CASE("rubber in uniaxial tension: closed forms of both neo-Hookean laws", "[solid]") {
+  // F = diag(a, a, s) with no stress across: the nominal stress P_33 as a function of the stretch s.
+  const double lambda = kRubber.lambda(), mu = kRubber.mu();
+  const auto stretched = [](double a, double s) { return Mat3<double>(Vec3<double>(a, a, s).asDiagonal()); };
+  for (const double s : {0.3, 0.8, 1.0, 1.5, 4.0}) {
+    // With ln J: mu (a^2 - 1) + lambda ln J = 0 and P_33 = mu (s - a^2/s), J = a^2 s.
+    double a = 1;
+    for (int i = 0; i < 60; ++i)
+      a -= (mu * (a * a - 1) + lambda * std::log(a * a * s)) / (2 * mu * a + 2 * lambda / a);
+    const Mat3<double> P = NeoHookeanLog(kRubber).stress(stretched(a, s));
+    CHECK(std::abs(P(0, 0)) <= 1e-14 * mu * (1 + s));
+    CHECK(P(2, 2) == Approx(mu * (s - a * a / s)).epsilon(1e-13).margin(1e-14));
+    // Without logarithm: mu a + q a s = 0 with q = (lambda + mu)(J - 1) - mu, so q = -mu/s, J - 1 = (mu -
+    // mu/s)/ (lambda + mu) and P_33 = mu s + q a^2.
+    const double J = 1 + (mu - mu / s) / (lambda + mu);
+    if (J <= 0) continue;
+    const Mat3<double> smooth = NeoHookean(kRubber).stress(stretched(std::sqrt(J / s), s));
+    CHECK(std::abs(smooth(0, 0)) <= 1e-14 * mu * (1 + s));
+    CHECK(smooth(2, 2) == Approx(mu * (s - J / (s * s))).epsilon(1e-13).margin(1e-14));
+  }
+}
+
 TEST_CASE("the nearest rotation of strong deformations", "[solid]") {
   Draws draws(5);
   for (int trial = 0; trial < 200; ++trial) {
@@ -310,6 +355,7 @@ TEST_CASE("energies by name of law agree with those by type", "[solid]") {
     same(SolidLaw::linear, LinearLaw(kRubber));
     same(SolidLaw::st_venant_kirchhoff, StVenantKirchhoff(kRubber));
     same(SolidLaw::neo_hookean, NeoHookean(kRubber));
+    same(SolidLaw::neo_hookean_log, NeoHookeanLog(kRubber));
     same(SolidLaw::corotated, Corotated(kRubber));
     CHECK((made(SolidLaw::averaged_linear) - made(SolidLaw::linear)).norm() >
           1e-3 * made(SolidLaw::linear).norm());

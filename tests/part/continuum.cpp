@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kYoung = 900, kPoisson = 0.3;
 const Elasticity kMaterial(kYoung, kPoisson);
-const std::vector<std::string> kSolidLaws{"elastic", "st_venant_kirchhoff", "neo_hookean"};
+const std::vector<std::string> kSolidLaws{"elastic", "st_venant_kirchhoff", "neo_hookean", "neo_hookean_log"};
 
 struct Body {
   const char* shape;
@@ -142,8 +142,9 @@ TEST_CASE("with homogeneous strain one quadrature point suffices, and the energy
     const Mat3<double> F = Vec3<double>(0.6 / 0.5, 0.3 / 0.4, 1.3).asDiagonal();
     const double density = law == "elastic"
                                ? LinearLaw(kMaterial).density(Mat3<double>(F - Mat3<double>::Identity()))
-                           : law == "neo_hookean" ? NeoHookean(kMaterial).density(F)
-                                                  : StVenantKirchhoff(kMaterial).density(F);
+                           : law == "neo_hookean"     ? NeoHookean(kMaterial).density(F)
+                           : law == "neo_hookean_log" ? NeoHookeanLog(kMaterial).density(F)
+                                                      : StVenantKirchhoff(kMaterial).density(F);
     const double volume = 4 * kPi / 3 * 0.5 * 0.4;
     CHECK(part->continuum()->energy(*part, q) == Approx(volume * density).epsilon(1e-13));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pliant/math/max_or_nan.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/math/scalar/pack.h>
 #include <pliant/math/types.h>
 
@@ -90,6 +91,10 @@ inline double min_lane(const Pack& x) {
   double min = x[0];
   for (int i = 1; i < Pack::kLanes; ++i) min = -max_or_nan(-x[i], -min);
   return min;
+}
+template <int N, class T>
+double min_lane(const Dual<N, T>& x) {
+  return min_lane(x.v);
 }
 
 }  // namespace pliant

@@ -156,7 +156,8 @@ PLIANT_INLINE const std::vector<ContinuumLawInfo>& all_continuum_laws() {
       {"elastic",
        "Linear elasticity, for small changes of the parameters with little rotation of the material.", false},
       {"st_venant_kirchhoff", "St. Venant-Kirchhoff elasticity, for any rotation.", false},
-      {"neo_hookean", "Rubber, for any rotation.", false},
+      {"neo_hookean", "Rubber without a logarithm in its energy, for any rotation.", false},
+      {"neo_hookean_log", "Classical compressible neo-Hookean rubber, for any rotation.", false},
       {"st_venant_kirchhoff_membrane", "A thin sheet that resists stretch, for any rotation.", true},
   };
   return all;
@@ -172,6 +173,7 @@ PLIANT_INLINE ContinuumLaw continuum_law(const ContinuumSettings& settings) {
   if (settings.law == "st_venant_kirchhoff")
     return Damped<StVenantKirchhoff>(Elasticity(settings.E, settings.nu_P));
   if (settings.law == "neo_hookean") return Damped<NeoHookean>(Elasticity(settings.E, settings.nu_P));
+  if (settings.law == "neo_hookean_log") return Damped<NeoHookeanLog>(Elasticity(settings.E, settings.nu_P));
   std::string known;
   for (const ContinuumLawInfo& info : all_continuum_laws()) known += std::string(" ") + info.name;
   throw std::invalid_argument("no law of elasticity '" + settings.law + "'; there are:" + known);

@@ -17,6 +17,7 @@
 #include <pliant/local/linear_law.h>
 #include <pliant/local/shell/sheet.h>
 #include <pliant/local/solid/neo_hookean.h>
+#include <pliant/local/solid/neo_hookean_log.h>
 #include <pliant/local/solid/st_venant_kirchhoff.h>
 #include <pliant/math/scalar/dual.h>
 #include <pliant/shape/material.h>
@@ -117,7 +118,8 @@ struct SheetStrain {
   }
 };
 
-using ContinuumLaw = std::variant<SmallStrain, Damped<StVenantKirchhoff>, Damped<NeoHookean>, SheetStrain>;
+using ContinuumLaw = std::variant<SmallStrain, Damped<StVenantKirchhoff>, Damped<NeoHookean>,
+                                  Damped<NeoHookeanLog>, SheetStrain>;
 
 /// Returns the law of the settings. Throws std::invalid_argument for an unknown law or impossible constants.
 ContinuumLaw continuum_law(const ContinuumSettings& settings);

@@ -3,22 +3,27 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 namespace pliant {
 
-/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have the same
-/// position.
+/// A mesh of triangles. Each position is one vertex, in the order of the file.
 struct MeshFile {
-  Eigen::Matrix3Xd vertices;   ///< in the units of the file, rounded to single precision
-  Eigen::Matrix3Xi triangles;  ///< three column numbers of `vertices` per triangle
+  Eigen::Matrix3Xd vertices;       ///< in the units of the file, in double precision
+  Eigen::Matrix3Xi triangles;      ///< three column numbers of `vertices` per triangle
+  std::vector<std::string> notes;  ///< flaws of the file that were removed, with their numbers, for the user
 };
 
-/// Reads all meshes of a file, each transformed by the nodes of the file that contain it (glTF). Throws
-/// FileError if the file cannot be read and std::invalid_argument if it is not a mesh of triangles and
-/// polygons with finite vertices. ObstacleMesh checks the topology of the result.
+/// Reads all meshes of a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off, each transformed by the nodes of the file that
+/// contain it (glTF). Polygons are divided into triangles, and common flaws are removed with a note
+/// (scene/mesh/README.md). Memory is proportional to the size of the file. Throws FileError if the file
+/// cannot be read, and std::invalid_argument, with the place of the fault, if it is not a mesh of triangles
+/// and polygons with finite vertices. ObstacleMesh checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
+/// Reads a mesh from the bytes of a file; `name` is its path, whose ending chooses the format.
+MeshFile read_mesh(const std::filesystem::path& name, std::string bytes);
 
 /// Returns the file name under which a run stores the mesh of an obstacle in its folder.
 std::string recorded_mesh_name(const std::string& obstacle);

@@ -1,4 +1,5 @@
-// Checks of an obstacle mesh, its edges, faces and sharp edges, its tree of boxes, and queries.
+// Checks of an obstacle mesh, the separation of solids that touch (triangle_neighbours.h), its edges, faces
+// and sharp edges, its tree of boxes, and queries.
 #include <pliant/collision/mesh/obstacle_mesh.h>
 
 #include <algorithm>
@@ -10,13 +11,12 @@
 #include <string>
 #include <utility>
 
+#include <pliant/collision/mesh/triangle_neighbours.h>
+
 namespace pliant {
 
 namespace {
 
-/// A triangle whose height is below this share of its longest edge has no area; vertices of files are often
-/// in single precision.
-constexpr double kNoHeight = 1e-7;
 /// Triangles are in one plane if their vertices are at most kSamePlane from the plane, in diagonals of the
 /// box of the mesh, and their normals differ by at most kOnePlaneNormal.
 constexpr double kSamePlane = 4e-7, kOnePlaneNormal = 1e-4;
@@ -30,6 +30,24 @@ std::string place(const Vec3<double>& x) {
 
 [[noreturn]] void fail_mesh(const std::string& what) {
   throw std::invalid_argument(what);
+}
+
+/// Throws the error of an edge whose triangles do not form pairs. a, b: vertices of the edge.
+[[noreturn]] void refuse_edge(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles, int a, int b) {
+  std::vector<int> at_edge;
+  std::vector<bool> forward;
+  for (int t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int from = triangles(k, t), to = triangles((k + 1) % 3, t);
+      if (std::minmax(from, to) != std::minmax(a, b)) continue;
+      at_edge.push_back(t);
+      forward.push_back(from == a);
+    }
+  const std::string edge = "the edge from " + place(x.col(a)) + " to " + place(x.col(b)),
+                    one = std::to_string(at_edge[0]), other = std::to_string(at_edge[1]);
+  if (forward[0] == forward[1])
+    fail_mesh("triangles " + one + " and " + other + " have opposite orientations at " + edge);
+  fail_mesh(edge + " has three triangles: " + one + ", " + other + " and " + std::to_string(at_edge[2]));
 }
 
 }  // namespace
@@ -86,29 +104,24 @@ void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi
     if (!used[k])
       fail_mesh("vertex " + std::to_string(first[k]) +
                 " is in no triangle: " + place(x_.col(static_cast<Eigen::Index>(k))));
+  separate_touching(x_, triangles_);
 }
 
 void ObstacleMesh::build_edges() {
-  std::map<std::pair<int, int>, int> number;  // edge number by its two vertices, the smaller first
-  edges_of_.resize(at(static_cast<int>(triangles_.cols())));
+  const TriangleNeighbours neighbours(x_, triangles_);
+  edges_of_.assign(at(static_cast<int>(triangles_.cols())), {-1, -1, -1});
   for (int t = 0; t < triangles_.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t);
-      const auto [entry, is_new] = number.try_emplace(std::minmax(a, b), static_cast<int>(edges_.size()));
-      edges_of_[at(t)][at(k)] = entry->second;
-      if (is_new) {
-        edges_.push_back({{a, b}, {t, -1}, true});
-        continue;
-      }
-      Edge& edge = edges_[at(entry->second)];
-      auto edge_text = [&] { return "the edge from " + place(x_.col(a)) + " to " + place(x_.col(b)); };
-      const std::string one = std::to_string(edge.triangle[0]), other = std::to_string(t);
-      if (edge.triangle[1] >= 0)
-        fail_mesh(edge_text() + " has three triangles: " + one + ", " + std::to_string(edge.triangle[1]) +
-                  " and " + other);
-      if (edge.vertex[0] == a)
-        fail_mesh("triangles " + one + " and " + other + " have opposite orientations at " + edge_text());
-      edge.triangle[1] = t;
+      int& number = edges_of_[at(t)][at(k)];
+      if (number >= 0) continue;  // a triangle before this one has the edge
+      number = static_cast<int>(edges_.size());
+      const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t), other = neighbours.across[at(t)][at(k)];
+      if (other == TriangleNeighbours::kConflict) refuse_edge(x_, triangles_, a, b);
+      edges_.push_back({{a, b}, {t, other}, true});
+      if (other < 0) continue;
+      for (int l = 0; l < 3; ++l)
+        if (triangles_(l, other) == b && triangles_((l + 1) % 3, other) == a)
+          edges_of_[at(other)][at(l)] = number;
     }
   closed_ = std::all_of(edges_.begin(), edges_.end(), [](const Edge& e) { return e.triangle[1] >= 0; });
 }

@@ -24,6 +24,8 @@ std::unique_ptr<NodalEnergy> make(SolidLaw law, const Nodes& rest, const Eigen::
                                                                        StVenantKirchhoff(material));
     case SolidLaw::neo_hookean:
       return std::make_unique<SolidEnergy<Element, NeoHookean>>(rest, elements, NeoHookean(material));
+    case SolidLaw::neo_hookean_log:
+      return std::make_unique<SolidEnergy<Element, NeoHookeanLog>>(rest, elements, NeoHookeanLog(material));
     case SolidLaw::corotated:
       return std::make_unique<SolidEnergy<Element, Corotated>>(rest, elements, Corotated(material));
   }

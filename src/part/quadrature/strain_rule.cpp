@@ -119,6 +119,7 @@ class StrainIntegrands {
     for (int number = 0; number < n_states; ++number) {
       State state;
       ranges_.draw(draw, number, state.q, state.first);
+      confine(number, state.q);
       VecMax<double> unused;
       ranges_.draw(draw, number, unused, state.second);
       const Densities& unit = units(number, state);
@@ -139,6 +140,43 @@ class StrainIntegrands {
   struct State {
     VecMax<double> q, first, second;
   };
+
+  /// Moves a state towards the rest shape until the law is defined in it, if the law has no energy for
+  /// inverted material.
+  void confine(int number, VecMax<double>& q) const {
+    if (!std::holds_alternative<Damped<NeoHookeanLog>>(law_)) return;
+    constexpr double least = 0.3;  // of the volume of each piece of material
+    const int n = static_cast<int>(q.size());
+    const auto rest = [&](int k) { return shape_.part.parameters().moving(k).rest_value(); };
+    if (static_cast<std::size_t>(number) == reach_.size()) {
+      VecMax<double> trial(n);
+      double reach = 2;
+      do {
+        reach /= 2;
+        for (int k = 0; k < n; ++k) trial[k] = rest(k) + reach * (q[k] - rest(k));
+      } while (!(least_volume(trial) >= least));
+      reach_.push_back(reach);
+    }
+    const double reach = reach_[static_cast<std::size_t>(number)];
+    for (int k = 0; k < n; ++k) q[k] = rest(k) + reach * (q[k] - rest(k));
+  }
+
+  /// Returns the smallest det F at the sample points.
+  double least_volume(const VecMax<double>& q) const {
+    const auto values =
+        shape_.part.parameters().expand<Dual<1>>(q, VecMax<double>(VecMax<double>::Zero(q.size())));
+    const int packs = static_cast<int>(sample_points_.weight.size());
+    double least = kInfinity;
+    strain::Block block;
+    for (int begin = 0; begin < packs; begin += strain::kBlock) {
+      const int count = std::min(strain::kBlock, packs - begin);
+      strain::evaluate({shape_.part, values, sample_points_, begin, count}, static_cast<int>(q.size()),
+                       Level::position, block);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        least = std::min(least, min_lane(determinant(block.F[i], cofactors(block.F[i]))));
+    }
+    return least;
+  }
 
   /// Calls act(number, densities) for the first n points.
   template <class Act>
@@ -208,6 +246,7 @@ class StrainIntegrands {
   std::vector<RestPoint> sample_;  // over the whole body
   StrainPoints sample_points_;
   mutable std::vector<Densities> units_;  // of each state, in the order in which they are drawn
+  mutable std::vector<double> reach_;     // share of each state that confine() keeps
 };
 
 /// Removes points that the integrals do not need. Each pass handles the points in groups; the passes end when

@@ -20,7 +20,7 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
       "An immobile triangle mesh or plate.",
       {required("name", name(), "Name that no part, plane or other obstacle has.", "\"bowl\""),
        optional("mesh", text(1),
-                "Surface mesh: a file .obj, .ply, .stl, .gltf or .glb, relative to the folder of the scene. "
+                "Surface mesh: a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off, relative to the folder of the scene. "
                 "Triangles are counter-clockwise seen from the free side. A body that comes from behind "
                 "passes through an open mesh."),
        optional("half_extents", array(number(above(0), "m"), 2, 2),
@@ -45,7 +45,11 @@ std::optional<MeshFile> read_mesh(const Reader& r, const MeshFolder& folder, Sce
   const std::filesystem::path file =
       folder.path / (folder.of_a_run ? recorded_mesh_name(r.text("name")) : r.text("mesh"));
   try {
-    return read_mesh_file(file);
+    MeshFile mesh = read_mesh_file(file);
+    std::string notes;
+    for (const std::string& note : mesh.notes) notes += "; " + note;
+    if (!notes.empty()) faults.warn(r.at("mesh"), "the mesh is cleaned" + notes);
+    return mesh;
   } catch (const FileError& fault) {
     faults.value(r.at("mesh"), fault.what());
   } catch (const std::invalid_argument& fault) {

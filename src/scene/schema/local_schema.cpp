@@ -16,7 +16,9 @@ namespace {
 /// Returns the record of an elastic law; its fields are the material numbers of the law. meaning: description
 /// of the law.
 Record law_record(const LocalLawInfo& info, const char* meaning) {
-  Record law{info.name, std::string(info.shell ? "For a shell: " : "For a solid: ") + meaning, {}};
+  Record law{info.name,
+             std::string(info.shell ? "For a shell: " : "For a solid: ") + meaning + " " + info.formula + ".",
+             {}};
   for (const LocalLawInfo::Number& n : info.numbers) {
     schema::Range range = at_most(n.max);
     range.min = n.min;

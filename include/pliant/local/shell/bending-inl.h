@@ -218,9 +218,10 @@ template <class Hinges>
 typename MidEdgeBending<Hinges>::Scratch MidEdgeBending<Hinges>::scratch(Buffer& buffer) const {
   const std::size_t corners = std::max(hinge_batches_.buffer_size(), triangle_batches_.buffer_size()),
                     angles = static_cast<std::size_t>(n_angles());
-  buffer.numbers.resize(corners + angles + n_moments());
+  buffer.numbers.resize(corners + 2 * angles + n_moments() + edges_.size());
   double* numbers = buffer.numbers.data();
-  return {numbers, numbers + corners, numbers + corners + angles};
+  double* moments = numbers + corners + angles;
+  return {numbers, numbers + corners, moments, moments + n_moments(), moments + n_moments() + angles};
 }
 
 template <class Hinges>
@@ -265,12 +266,60 @@ typename MidEdgeBending<Hinges>::PerEdge MidEdgeBending<Hinges>::moments(const T
 }
 
 template <class Hinges>
-template <class Angle>
-void MidEdgeBending<Hinges>::compute_angles(double* angles, ThreadPool* pool, Angle&& angle) const {
-  angles[n_angles() - 1] = 0;
+template <class Act>
+void MidEdgeBending<Hinges>::for_each_hinge_batch(ThreadPool* pool, Act&& act) const {
   for_ranges(hinge_batches_.n_batches(), detail::kBendingRange, pool, [&](int first, int last) {
-    for (int b = first; b < last; ++b) store(angle(b), angles + Pack::kLanes * b);
+    for (int b = first; b < last; ++b) act(b);
   });
+}
+
+template <class Hinges>
+void MidEdgeBending<Hinges>::unwrap(int batch, const Pack& turn, const double* own, const Scratch& to) const {
+  for (int lane = 0; lane < hinge_batches_.lanes(batch); ++lane) {
+    const int e = Pack::kLanes * batch + lane;
+    to.phi[e] = own[e] - turn[lane];
+    remove_turns(to.angles[e], to.phi[e]);
+  }
+}
+
+template <class Hinges>
+const double* MidEdgeBending<Hinges>::compute_rotations(const Coordinates& x, const Scratch& to,
+                                                        ThreadPool* pool) const {
+  const double* own = x.data() + 3 * n_nodes_;
+  to.angles[n_angles() - 1] = 0;
+  for_each_hinge_batch(pool, [&](int b) {
+    const Corners corners = hinge_batches_.corners(x, b);
+    store(hinges_.angle(b, corners), to.angles + Pack::kLanes * b);
+    if constexpr (Hinges::kOf == Of::position) {
+      const FoldTurn<Pack> turn = hinges_.turn(b, corners);
+      store(turn.slope, to.slopes + Pack::kLanes * b);
+      unwrap(b, turn.value, own, to);
+    }
+  });
+  if constexpr (Hinges::kOf != Of::position) return own;
+  std::copy(own + n_hinges_, own + edges_.size(), to.phi + n_hinges_);
+  return to.phi;
+}
+
+template <class Hinges>
+const double* MidEdgeBending<Hinges>::compute_rotation_changes(const Coordinates& x, const Coordinates& dx,
+                                                               const Scratch& to, ThreadPool* pool) const {
+  const double* own = dx.data() + 3 * n_nodes_;
+  to.angles[n_angles() - 1] = 0;
+  for_each_hinge_batch(pool, [&](int b) {
+    const Corners corners = hinge_batches_.corners(x, b);
+    const Pack change = dot(hinges_.gradient(b, corners), hinge_batches_.corners(dx, b));
+    store(change, to.angles + Pack::kLanes * b);
+    if constexpr (Hinges::kOf == Of::position) {
+      const Pack slope = hinges_.turn(b, corners).slope, turn = slope * change;
+      store(slope, to.slopes + Pack::kLanes * b);
+      for (int lane = 0; lane < hinge_batches_.lanes(b); ++lane)
+        to.phi[Pack::kLanes * b + lane] = own[Pack::kLanes * b + lane] - turn[lane];
+    }
+  });
+  if constexpr (Hinges::kOf != Of::position) return own;
+  std::copy(own + n_hinges_, own + edges_.size(), to.phi + n_hinges_);
+  return to.phi;
 }
 
 template <class Hinges>
@@ -288,30 +337,40 @@ void MidEdgeBending<Hinges>::compute_moments(const double* angles, const double*
 
 template <class Hinges>
 void MidEdgeBending<Hinges>::compute_state(const Coordinates& x, const Scratch& to, ThreadPool* pool) const {
-  compute_angles(to.angles, pool, [&](int b) { return hinges_.angle(b, hinge_batches_.corners(x, b)); });
-  compute_moments(to.angles, x.data() + 3 * n_nodes_, to.moments, pool,
+  const double* phi = compute_rotations(x, to, pool);
+  compute_moments(to.angles, phi, to.moments, pool,
                   [&](int b) { return hinges_.strain(b, triangle_batches_.corners(x, b)); });
 }
 
 template <class Hinges>
 void MidEdgeBending<Hinges>::compute_changes(const Coordinates& x, const Coordinates& dx, const Scratch& to,
                                              ThreadPool* pool) const {
-  compute_angles(to.angles, pool, [&](int b) {
-    return dot(hinges_.gradient(b, hinge_batches_.corners(x, b)), hinge_batches_.corners(dx, b));
-  });
-  compute_moments(to.angles, dx.data() + 3 * n_nodes_, to.moments, pool, [&](int b) {
+  const double* phi = compute_rotation_changes(x, dx, to, pool);
+  compute_moments(to.angles, phi, to.moments, pool, [&](int b) {
     return strain_change(hinges_.edges(b, triangle_batches_.corners(x, b)),
                          edges_of(triangle_batches_.corners(dx, b)));
   });
 }
 
 template <class Hinges>
-Pack MidEdgeBending<Hinges>::hinge_moment(int batch, const double* m) const {
+Pack MidEdgeBending<Hinges>::own_moment(int batch, const double* m) const {
   Pack moment;
   for (int lane = 0; lane < Pack::kLanes; ++lane) {
     const auto& index = moment_index_[static_cast<std::size_t>(hinge_batches_.element(batch, lane))];
-    moment.set(lane, 0.5 * (m[index[0]] + m[index[1]]));
+    moment.set(lane, m[index[0]] - m[index[1]]);
   }
+  return moment;
+}
+
+template <class Hinges>
+Pack MidEdgeBending<Hinges>::hinge_moment(int batch, const Scratch& at) const {
+  Pack moment;
+  for (int lane = 0; lane < Pack::kLanes; ++lane) {
+    const auto& index = moment_index_[static_cast<std::size_t>(hinge_batches_.element(batch, lane))];
+    moment.set(lane, 0.5 * (at.moments[index[0]] + at.moments[index[1]]));
+  }
+  if constexpr (Hinges::kOf == Of::position)
+    moment -= load(at.slopes + Pack::kLanes * batch) * own_moment(batch, at.moments);
   return moment;
 }
 
@@ -325,13 +384,13 @@ void MidEdgeBending<Hinges>::add_own_forces(VecX<double>& f, const double* m) co
 
 template <class Hinges>
 double MidEdgeBending<Hinges>::energy(const Coordinates& x) const {
-  std::vector<double> angles(static_cast<std::size_t>(n_angles()));
-  compute_angles(angles.data(), nullptr,
-                 [&](int b) { return hinges_.angle(b, hinge_batches_.corners(x, b)); });
+  Buffer buffer;
+  const Scratch at = scratch(buffer);
+  const double* phi = compute_rotations(x, at, nullptr);
   double twice_E = 0;
   for (int b = 0; b < triangle_batches_.n_batches(); ++b) {
     const Triangles& triangles = triangles_[static_cast<std::size_t>(b)];
-    const PerEdge alpha = rotations(triangles, angles.data(), x.data() + 3 * n_nodes_,
+    const PerEdge alpha = rotations(triangles, at.angles, phi,
                                     hinges_.strain(b, triangle_batches_.corners(x, b))),
                   m = moments(triangles, alpha);
     twice_E += sum(alpha[0] * m[0] + alpha[1] * m[1] + alpha[2] * m[2]);
@@ -340,17 +399,17 @@ double MidEdgeBending<Hinges>::energy(const Coordinates& x) const {
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::add_forces(const Coordinates& x, const double* m, VecX<double>& f,
-                                        double* corners, ThreadPool* pool) const {
-  hinge_batches_.add(f, corners, pool, [&](int b) {
-    return detail::scaled_corners(-hinge_moment(b, m), hinges_.gradient(b, hinge_batches_.corners(x, b)));
+void MidEdgeBending<Hinges>::add_forces(const Coordinates& x, const Scratch& at, VecX<double>& f,
+                                        ThreadPool* pool) const {
+  hinge_batches_.add(f, at.corners, pool, [&](int b) {
+    return detail::scaled_corners(-hinge_moment(b, at), hinges_.gradient(b, hinge_batches_.corners(x, b)));
   });
   if (curved_)
-    triangle_batches_.add(f, corners, pool, [&](int b) {
-      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, m)),
+    triangle_batches_.add(f, at.corners, pool, [&](int b) {
+      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, at.moments)),
                            hinges_.edges(b, triangle_batches_.corners(x, b)));
     });
-  add_own_forces(f, m);
+  add_own_forces(f, at.moments);
 }
 
 template <class Hinges>
@@ -358,7 +417,7 @@ void MidEdgeBending<Hinges>::add_force(const Coordinates& x, VecX<double>& f, Bu
                                        ThreadPool* pool) const {
   const Scratch now = scratch(buffer);
   compute_state(x, now, pool);
-  add_forces(x, now.moments, f, now.corners, pool);
+  add_forces(x, now, f, pool);
 }
 
 template <class Hinges>
@@ -366,7 +425,27 @@ void MidEdgeBending<Hinges>::add_viscous_force(const Coordinates& x, const Coord
                                                VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
   const Scratch rate = scratch(buffer);
   compute_changes(x, x_dot, rate, pool);
-  add_forces(x, rate.moments, f, rate.corners, pool);
+  add_forces(x, rate, f, pool);
+}
+
+template <class Hinges>
+void MidEdgeBending<Hinges>::add_geometric_change(const Coordinates& x, const Coordinates& dx,
+                                                  const Scratch& now, VecX<double>& f,
+                                                  ThreadPool* pool) const {
+  hinge_batches_.add(f, now.corners, pool, [&](int b) {
+    const Corners corners = hinge_batches_.corners(x, b), change = hinge_batches_.corners(dx, b),
+                  gradient = hinges_.gradient(b, corners);
+    const Pack moment = -hinge_moment(b, now), turning = hinges_.turn(b, corners).curvature *
+                                                         own_moment(b, now.moments) * dot(gradient, change);
+    Corners force = detail::scaled_corners(moment, detail::hinge_gradient_change(corners, change));
+    for (std::size_t c = 0; c < 4; ++c) force[c] += turning * gradient[c];
+    return force;
+  });
+  if (curved_)
+    triangle_batches_.add(f, now.corners, pool, [&](int b) {
+      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, now.moments)),
+                           edges_of(triangle_batches_.corners(dx, b)));
+    });
 }
 
 template <class Hinges>
@@ -374,24 +453,14 @@ void MidEdgeBending<Hinges>::add_derivative(const Coordinates& x, const Coordina
                                             Buffer& buffer, ThreadPool* pool) const {
   add_viscous_force(x, dx, f, buffer, pool);
   if constexpr (Hinges::kOf == Of::position) {
-    // Geometric stiffness: the change of the gradients of angles and strains along dx, with constant moments.
     const Scratch now = scratch(buffer);
     compute_state(x, now, pool);
-    hinge_batches_.add(f, now.corners, pool, [&](int b) {
-      return detail::scaled_corners(
-          -hinge_moment(b, now.moments),
-          detail::hinge_gradient_change(hinge_batches_.corners(x, b), hinge_batches_.corners(dx, b)));
-    });
-    if (curved_)
-      triangle_batches_.add(f, now.corners, pool, [&](int b) {
-        return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, now.moments)),
-                             edges_of(triangle_batches_.corners(dx, b)));
-      });
+    add_geometric_change(x, dx, now, f, pool);
   }
 }
 
 /// A triangle has 21 local coordinates: its corners (0 to 8), the opposite corners of the three neighbouring
-/// triangles (9 to 17) and phi of its edges (18 to 20).
+/// triangles (9 to 17) and the own coordinates of its edges (18 to 20).
 template <class Hinges>
 struct MidEdgeBending<Hinges>::Stiffness {
   static constexpr int kCoordinates = 21;
@@ -417,9 +486,15 @@ void MidEdgeBending<Hinges>::add_edge(int t, int k, double moment, const Coordin
     const std::array<int, 4> place{left ? i : j, left ? j : i, left ? k : 3 + k, left ? 3 + k : k};
     const int batch = e / Pack::kLanes, at = e % Pack::kLanes;
     const Corners now = hinge_batches_.corners(x, batch), gradient = hinges_.gradient(batch, now);
+    double share = 0.5, bending = 0;  // dalpha/dtheta and d2alpha/dtheta2 with constant own coordinates
+    if constexpr (Hinges::kOf == Of::position) {
+      const FoldTurn<Pack> turn = hinges_.turn(batch, now);
+      share -= (left ? 1 : -1) * turn.slope[at];
+      bending -= (left ? 1 : -1) * turn.curvature[at];
+    }
     for (std::size_t c = 0; c < 4; ++c)
       for (int axis = 0; axis < 3; ++axis) {
-        to.G(k, 3 * place[c] + axis) += 0.5 * gradient[c][axis][at];
+        to.G(k, 3 * place[c] + axis) += share * gradient[c][axis][at];
         if constexpr (Hinges::kOf == Of::position) {
           Corners unit;
           for (Vec3<Pack>& u : unit) u.setConstant(Pack(0.0));
@@ -427,7 +502,9 @@ void MidEdgeBending<Hinges>::add_edge(int t, int k, double moment, const Coordin
           const Corners change = detail::hinge_gradient_change(now, unit);
           for (std::size_t r = 0; r < 4; ++r)
             for (int row = 0; row < 3; ++row)
-              to.element.K(3 * place[r] + row, 3 * place[c] + axis) += 0.5 * moment * change[r][row][at];
+              to.element.K(3 * place[r] + row, 3 * place[c] + axis) +=
+                  moment *
+                  (share * change[r][row][at] + bending * gradient[r][row][at] * gradient[c][axis][at]);
         }
       }
   }
@@ -463,11 +540,11 @@ void MidEdgeBending<Hinges>::add_strain(const Triangles& triangles, int lane, co
 
 template <class Hinges>
 typename MidEdgeBending<Hinges>::Stiffness MidEdgeBending<Hinges>::triangle_stiffness(
-    int t, const Coordinates& x, const double* angles) const {
+    int t, const Coordinates& x, const double* angles, const double* phi) const {
   const int batch = t / Pack::kLanes, lane = t % Pack::kLanes;
   const Triangles& triangles = triangles_[static_cast<std::size_t>(batch)];
   const TriangleCorners corners = triangle_batches_.corners(x, batch);
-  const PerEdge alpha = rotations(triangles, angles, x.data() + 3 * n_nodes_, hinges_.strain(batch, corners)),
+  const PerEdge alpha = rotations(triangles, angles, phi, hinges_.strain(batch, corners)),
                 m = moments(triangles, alpha);
   Stiffness stiffness;
   Mat3<double> Q;
@@ -487,10 +564,10 @@ typename MidEdgeBending<Hinges>::Stiffness MidEdgeBending<Hinges>::triangle_stif
 template <class Hinges>
 template <class Visit>
 void MidEdgeBending<Hinges>::each_element(const Coordinates& x, Visit&& visit) const {
-  std::vector<double> angles(static_cast<std::size_t>(n_angles()));
-  compute_angles(angles.data(), nullptr,
-                 [&](int b) { return hinges_.angle(b, hinge_batches_.corners(x, b)); });
-  for (int t = 0; t < triangle_nodes_.cols(); ++t) visit(triangle_stiffness(t, x, angles.data()).element);
+  Buffer buffer;
+  const Scratch at = scratch(buffer);
+  const double* phi = compute_rotations(x, at, nullptr);
+  for (int t = 0; t < triangle_nodes_.cols(); ++t) visit(triangle_stiffness(t, x, at.angles, phi).element);
 }
 
 template <class Hinges>

@@ -1,6 +1,8 @@
 // Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
 // 2006). Each edge has a normal at its middle, which can rotate about the edge. The angle phi (rad) from the
 // mean of the normals of both triangles to this normal is an own coordinate of the energy (nodal_energy.h).
+// For FoldingHinges the own coordinate is y = phi + g(dtheta), so that a fold can pass half a turn
+// (fold_turn.h); g = 0 for folds of up to a right angle.
 // Relative to the two triangles the normal has rotated since rest by
 //   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),
 // with dtheta the change of the angle between the triangles (hinge.h). The curvature of a triangle is
@@ -26,7 +28,7 @@
 namespace pliant {
 
 /// Hinges: LinearHinges (energy of displacements, dtheta is linear in the displacements) or FoldingHinges
-/// (energy of positions; each angle may change by less than pi from rest).
+/// (energy of positions, for any number of turns of a fold; |phi| must be below pi/2).
 template <class Hinges>
 class MidEdgeBending final : public NodalEnergy {
  public:
@@ -35,7 +37,7 @@ class MidEdgeBending final : public NodalEnergy {
   MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet, double area_density);
 
   Of of() const override { return Hinges::kOf; }
-  /// Returns the inertia of phi for the edges in the order of shell_edges, kg m^2.
+  /// Returns the inertia of the own coordinates for the edges in the order of shell_edges, kg m^2.
   VecX<double> own_inertia() const override { return own_inertia_; }
   double energy(const Coordinates& x) const override;
   void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
@@ -58,10 +60,10 @@ class MidEdgeBending final : public NodalEnergy {
     PerEdge side;                        ///< 1: the triangle is on the left of its edge; -1: on the right
     std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< indices of phi and of dtheta of each edge
   };
-  /// Three sections of the buffer: corner forces of batches, dtheta of hinges, moments m = dE/dalpha of
-  /// triangles.
+  /// Sections of the buffer: corner forces of batches, dtheta of hinges, moments m = dE/dalpha of triangles,
+  /// g' of hinges (fold_turn.h) and phi of edges. LinearHinges do not use the last two.
   struct Scratch {
-    double *corners, *angles, *moments;
+    double *corners, *angles, *moments, *slopes, *phi;
   };
   Scratch scratch(Buffer& buffer) const;
   /// Length of an array of dtheta. Its last entry is 0, for boundary edges.
@@ -82,9 +84,16 @@ class MidEdgeBending final : public NodalEnergy {
   /// Returns the tensions C^T m, N/m.
   static PerEdge tensions(const Triangles& triangles, const PerEdge& m);
   PerEdge moments_at(int batch, const double* m) const;
-  /// Computes dtheta of all hinges. angle(batch) returns dtheta of four hinges.
-  template <class Angle>
-  void compute_angles(double* angles, ThreadPool* pool, Angle&& angle) const;
+  /// Calls act(batch) for all batches of hinges.
+  template <class Act>
+  void for_each_hinge_batch(ThreadPool* pool, Act&& act) const;
+  /// Computes dtheta, g' and phi at x. Returns phi of all edges.
+  const double* compute_rotations(const Coordinates& x, const Scratch& to, ThreadPool* pool) const;
+  /// Computes g' at x and the changes of dtheta and phi along dx. Returns the changes of phi of all edges.
+  const double* compute_rotation_changes(const Coordinates& x, const Coordinates& dx, const Scratch& to,
+                                         ThreadPool* pool) const;
+  /// Computes phi of the hinges of a batch from their own coordinates.
+  void unwrap(int batch, const Pack& turn, const double* own, const Scratch& to) const;
   /// Computes the moments of all triangles from dtheta and phi. strain(batch) returns q of four triangles.
   template <class Strain>
   void compute_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
@@ -94,18 +103,22 @@ class MidEdgeBending final : public NodalEnergy {
   /// Computes the changes of angles and moments along dx.
   void compute_changes(const Coordinates& x, const Coordinates& dx, const Scratch& to,
                        ThreadPool* pool) const;
-  /// Returns dE/dtheta of the hinges of a batch, N m.
-  Pack hinge_moment(int batch, const double* moments) const;
-  /// Adds to f the forces of the moments on the nodes and on phi. x: current coordinates.
-  void add_forces(const Coordinates& x, const double* moments, VecX<double>& f, double* corners,
-                  ThreadPool* pool) const;
-  /// Adds to f the forces of the moments on phi.
+  /// Returns dE/dphi of the hinges of a batch, N m.
+  Pack own_moment(int batch, const double* moments) const;
+  /// Returns dE/dtheta of the hinges of a batch with constant own coordinates, N m.
+  Pack hinge_moment(int batch, const Scratch& at) const;
+  /// Adds to f the forces of the moments on the nodes and on the own coordinates. x: current coordinates.
+  void add_forces(const Coordinates& x, const Scratch& at, VecX<double>& f, ThreadPool* pool) const;
+  /// Adds to f the changes of the nodal forces along dx with constant moments.
+  void add_geometric_change(const Coordinates& x, const Coordinates& dx, const Scratch& now, VecX<double>& f,
+                            ThreadPool* pool) const;
+  /// Adds to f the forces of the moments on the own coordinates.
   void add_own_forces(VecX<double>& f, const double* moments) const;
 
   /// Stiffness of one triangle while it is assembled.
   struct Stiffness;
-  /// Returns K of triangle t at x. angles: dtheta of all hinges at x.
-  Stiffness triangle_stiffness(int t, const Coordinates& x, const double* angles) const;
+  /// Returns K of triangle t at x. angles, phi: dtheta of all hinges and phi of all edges at x.
+  Stiffness triangle_stiffness(int t, const Coordinates& x, const double* angles, const double* phi) const;
   /// Adds the terms of edge k of triangle t to its stiffness. moment: dE/dalpha at this edge, N m. A boundary
   /// edge has no hinge.
   void add_edge(int t, int k, double moment, const Coordinates& x, Stiffness& to) const;

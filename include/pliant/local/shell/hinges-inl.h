@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <pliant/local/shell/hinges.h>
+#include <pliant/local/tensor.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {
@@ -32,12 +33,28 @@ PLIANT_INLINE std::array<Pack, 3> FoldingHinges::strain(int batch, const std::ar
   return q;
 }
 
-PLIANT_INLINE Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
+PLIANT_INLINE math::SinCos<Pack> FoldingHinges::change(int batch, const HingeCorners<Pack>& x) const {
   const math::SinCos<Pack>& rest = rest_[static_cast<std::size_t>(batch)];
   const math::SinCos<Pack> now = hinge_sin_cos(x);
-  // Sine and cosine of the change since rest. The result jumps only where the change is half a turn.
-  const Pack s = now.sin * rest.cos - now.cos * rest.sin, c = now.cos * rest.cos + now.sin * rest.sin;
+  return {now.sin * rest.cos - now.cos * rest.sin, now.cos * rest.cos + now.sin * rest.sin};
+}
+
+PLIANT_INLINE Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
+  const auto [s, c] = change(batch, x);
   return {std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])};
+}
+
+PLIANT_INLINE FoldTurn<Pack> FoldingHinges::turn(int batch, const HingeCorners<Pack>& x) const {
+  FoldTurn<Pack> turn{0.0, 0.0, 0.0};
+  const auto [s, c] = change(batch, x);
+  if (min_lane(c) >= 0) return turn;  // no fold of more than a right angle
+  for (int lane = 0; lane < Pack::kLanes; ++lane) {
+    const FoldTurn<double> one = fold_turn(std::atan2(s[lane], c[lane]));
+    turn.value.set(lane, one.value);
+    turn.slope.set(lane, one.slope);
+    turn.curvature.set(lane, one.curvature);
+  }
+  return turn;
 }
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/shell/edge_strain.h>
+#include <pliant/local/shell/fold_turn.h>
 #include <pliant/local/shell/hinge.h>
 
 namespace pliant {
@@ -20,6 +21,8 @@ class LinearHinges {
 
   /// Returns dtheta, rad, of four hinges with corner displacements d.
   Pack angle(int batch, const HingeCorners<Pack>& d) const;
+  /// Returns the term g of the own coordinates (fold_turn.h): 0.
+  FoldTurn<Pack> turn(int, const HingeCorners<Pack>&) const { return {0.0, 0.0, 0.0}; }
   /// Returns the gradient of angle(), 1/m.
   const HingeCorners<Pack>& gradient(int batch, const HingeCorners<Pack>&) const {
     return gradients_[static_cast<std::size_t>(batch)];
@@ -38,19 +41,24 @@ class LinearHinges {
   std::vector<Edges<Pack>> edges_;
 };
 
-/// Exact changes of angles and strains from rest to the positions x. dtheta is between -pi and pi. The
-/// members are those of LinearHinges, with x in place of d; edges() returns the current edges.
+/// Exact changes of angles and strains from rest to the positions x. dtheta is between -pi and pi. turn()
+/// returns the term of the own coordinate by which a fold can pass half a turn. The other members are those
+/// of LinearHinges, with x in place of d; edges() returns the current edges.
 class FoldingHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::position;
   FoldingHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
   Pack angle(int batch, const HingeCorners<Pack>& x) const;
+  FoldTurn<Pack> turn(int batch, const HingeCorners<Pack>& x) const;
   HingeCorners<Pack> gradient(int, const HingeCorners<Pack>& x) const { return hinge_gradient(x); }
   std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& x) const;
   Edges<Pack> edges(int, const std::array<Vec3<Pack>, 3>& x) const { return edges_of(x); }
 
  private:
+  /// Returns the sine and cosine of dtheta, both times a positive number.
+  math::SinCos<Pack> change(int batch, const HingeCorners<Pack>& x) const;
+
   std::vector<math::SinCos<Pack>> rest_;  // sine and cosine of theta at rest, as hinge_sin_cos returns them
   std::vector<std::array<Pack, 3>> rest_strain_;  // |e_k|^2/2 at rest, m^2
 };

@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-/// Law: StVenantKirchhoffSheet or NeoHookeanSheet (membrane_laws.h).
+/// Law: StVenantKirchhoffSheet, NeoHookeanSheet or NeoHookeanLogSheet (membrane_laws.h).
 template <class Law>
 class Membrane final : public NodalEnergy {
  public:
@@ -21,7 +21,8 @@ class Membrane final : public NodalEnergy {
   Membrane(const ShellMesh& mesh, const Sheet& sheet);
 
   Of of() const override { return Of::position; }
-  /// Returns E, J; infinite or NaN where a neo-Hookean triangle has no area.
+  /// Returns E, J. Where a triangle has no area, E of NeoHookeanSheet is infinite or NaN, and all members of
+  /// NeoHookeanLogSheet throw InvertedElement.
   double energy(const Coordinates& x) const override;
   void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
@@ -53,8 +54,10 @@ class Membrane final : public NodalEnergy {
 
 using StVenantKirchhoffMembrane = Membrane<StVenantKirchhoffSheet>;
 using NeoHookeanMembrane = Membrane<NeoHookeanSheet>;
+using NeoHookeanLogMembrane = Membrane<NeoHookeanLogSheet>;
 
 extern template class Membrane<StVenantKirchhoffSheet>;
 extern template class Membrane<NeoHookeanSheet>;
+extern template class Membrane<NeoHookeanLogSheet>;
 
 }  // namespace pliant

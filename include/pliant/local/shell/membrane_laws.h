@@ -2,9 +2,12 @@
 // edges (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and
 // rest thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
-//   neo-Hookean            W = A t mu/2 [tr C - 2 + (D^-k - 1)/k],  D = det C,  k = nu/(1 - nu).
-// The second law is the compressible material of Blatz & Ko (1962) in plane stress. The thickness becomes
-// D^(-k/2) t. k = 1 is incompressible rubber. For k -> 0 the term (D^-k - 1)/k becomes -log D.
+//   neo-Hookean            W = A t mu/2 [tr C - 2 + V(D)],  D = det C.
+// The neo-Hookean laws are solids in plane stress: the thickness becomes sqrt(s) t, with s(D) such that the
+// stress across the sheet is 0. Then V' = -s/D. There are two such laws (squared_thickness.h):
+//   neo_hookean_membrane       the compressible material of Blatz & Ko (1962)
+//   neo_hookean_log_membrane   the classical law with ln J (solid/neo_hookean_log.h)
+// Both are incompressible rubber for nu = 1/2.
 #pragma once
 
 #include <array>
@@ -12,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/local/shell/edge_strain.h>
+#include <pliant/local/shell/squared_thickness.h>
 
 namespace pliant {
 
@@ -48,15 +52,16 @@ struct StVenantKirchhoffSheet {
   };
 };
 
-/// See StVenantKirchhoffSheet for the members.
-struct NeoHookeanSheet {
-  static constexpr const char* name = "neo_hookean";
+/// See StVenantKirchhoffSheet for the members. Thickness: BlatzKoThickness or LogThickness.
+template <class Thickness>
+struct RubberSheet {
+  static constexpr const char* name = Thickness::name;
 
   struct Triangles {
     std::array<Pack, 3> trace;  ///< tr B_i of each edge i
     Pack inverse;               ///< 1/(2 A)^2, 1/m^4
     Pack stiffness;             ///< A t mu / 2, J
-    double k = 0;
+    Thickness thickness{0};
     StVenantKirchhoffSheet::Triangles linear;  ///< this material at small strains
 
     void set(int lane, const Edges<double>& e, const Sheet& sheet) {
@@ -65,7 +70,7 @@ struct NeoHookeanSheet {
       const double twice_area = e[0].cross(e[1]).norm();
       inverse.set(lane, 1 / (twice_area * twice_area));
       stiffness.set(lane, 0.25 * twice_area * sheet.thickness * sheet.mu());
-      k = sheet.nu / (1 - sheet.nu);
+      thickness = Thickness(sheet.nu);
       linear.set(lane, e, sheet);
     }
     std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return linear.tension(q); }
@@ -82,10 +87,10 @@ struct NeoHookeanSheet {
     }
     template <class T>
     std::array<T, 3> tension(const std::array<T, 3>& q) const {
-      // dW = stiffness (2 tr dG - D^(-k-1) dD) with dD = 2 tr dG + d(4 det G). The terms are written with
-      // `loss`, which is small near rest, to avoid cancellation.
+      // dW = stiffness (2 tr dG - s/D dD) with dD = 2 tr dG + d(4 det G). The terms are written with `loss`,
+      // which is small near rest, to avoid cancellation.
       const T D = 1.0 + D_minus_1(q);
-      const T loss = 1.0 - power(D);
+      const T loss = 1.0 - thickness.share(D);
       std::array<T, 3> tau;
       for (std::size_t i = 0; i < 3; ++i) {
         const T slope = 2.0 * (q[(i + 1) % 3] + q[(i + 2) % 3] - q[i]) * inverse;  // d(4 det G)/dq_i
@@ -94,20 +99,12 @@ struct NeoHookeanSheet {
       return tau;
     }
     Pack energy(const std::array<Pack, 3>& q) const {
-      const Pack D = 1.0 + D_minus_1(q);
-      const Pack volumetric = k == 0 ? -log(D) : (D * power(D) - 1.0) / k;
-      return stiffness * (2.0 * strain_trace(q) + volumetric);
-    }
-
-   private:
-    /// Returns D^(-k-1).
-    template <class T>
-    T power(const T& D) const {
-      if (k == 1) return 1.0 / (D * D);
-      if (k == 0) return 1.0 / D;
-      return math::exp(T(-(k + 1) * math::log(D)));
+      return stiffness * (2.0 * strain_trace(q) + thickness.energy(1.0 + D_minus_1(q)));
     }
   };
 };
+
+using NeoHookeanSheet = RubberSheet<BlatzKoThickness>;
+using NeoHookeanLogSheet = RubberSheet<LogThickness>;
 
 }  // namespace pliant

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-enum class SolidLaw { linear, averaged_linear, st_venant_kirchhoff, neo_hookean, corotated };
+enum class SolidLaw { linear, averaged_linear, st_venant_kirchhoff, neo_hookean, neo_hookean_log, corotated };
 
 /// Returns the energy of a solid. rest: positions of the nodes at rest, m. elements: 4, 10 or 15 node numbers
 /// in each column. Throws std::invalid_argument for another number of rows, and the errors of the

@@ -16,12 +16,14 @@
 #include <pliant/local/solid/element_corners.h>
 #include <pliant/local/solid/hooke.h>
 #include <pliant/local/solid/neo_hookean.h>
+#include <pliant/local/solid/neo_hookean_log.h>
 #include <pliant/local/solid/st_venant_kirchhoff.h>
 #include <pliant/local/solid/tetrahedron.h>
 
 namespace pliant {
 
-/// Element: a type of tetrahedron.h. Law: LinearLaw, StVenantKirchhoff, NeoHookean or Corotated.
+/// Element: a type of tetrahedron.h. Law: LinearLaw, StVenantKirchhoff, NeoHookean, NeoHookeanLog or
+/// Corotated.
 template <class Element, class Law>
 class SolidEnergy final : public NodalEnergy {
  public:
@@ -85,14 +87,17 @@ using LinearSolid = SolidEnergy<Element, LinearLaw>;
   prefix template class SolidEnergy<LinearTetrahedron, LinearLaw>;            \
   prefix template class SolidEnergy<LinearTetrahedron, StVenantKirchhoff>;    \
   prefix template class SolidEnergy<LinearTetrahedron, NeoHookean>;           \
+  prefix template class SolidEnergy<LinearTetrahedron, NeoHookeanLog>;        \
   prefix template class SolidEnergy<LinearTetrahedron, Corotated>;            \
   prefix template class SolidEnergy<QuadraticTetrahedron, LinearLaw>;         \
   prefix template class SolidEnergy<QuadraticTetrahedron, StVenantKirchhoff>; \
   prefix template class SolidEnergy<QuadraticTetrahedron, NeoHookean>;        \
+  prefix template class SolidEnergy<QuadraticTetrahedron, NeoHookeanLog>;     \
   prefix template class SolidEnergy<QuadraticTetrahedron, Corotated>;         \
   prefix template class SolidEnergy<EnrichedTetrahedron, LinearLaw>;          \
   prefix template class SolidEnergy<EnrichedTetrahedron, StVenantKirchhoff>;  \
   prefix template class SolidEnergy<EnrichedTetrahedron, NeoHookean>;         \
+  prefix template class SolidEnergy<EnrichedTetrahedron, NeoHookeanLog>;      \
   prefix template class SolidEnergy<EnrichedTetrahedron, Corotated>;
 PLIANT_SOLID_ENERGIES(extern)
 

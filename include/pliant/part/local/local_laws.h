@@ -24,7 +24,8 @@ struct LocalLawInfo {
   };
   const char* name;
   const char* meaning;
-  bool shell;  ///< whether the law is for shells; else it is for solids
+  const char* formula;  ///< energy W for each unit of rest volume or area, or energy E of the whole mesh
+  bool shell;           ///< whether the law is for shells; else it is for solids
   std::vector<Number> numbers;
   /// Returns the energy of a mesh. values: the values of `numbers`, in this order. Throws
   /// std::invalid_argument for impossible values.

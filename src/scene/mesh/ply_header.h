@@ -1,0 +1,37 @@
+// The header of a PLY file: the elements of the file and their properties.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "raw_mesh.h"
+
+namespace pliant::ply {
+
+enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+std::size_t size_of(Type type);
+bool is_integer(Type type);
+
+struct Property {
+  std::string name;
+  Type type;
+  bool list = false;
+  Type count_type = Type::uint8;  ///< of the number of entries of a list
+};
+struct Element {
+  std::string name;
+  std::size_t count = 0, byte = 0;  ///< byte: place of the element in the header
+  std::vector<Property> properties;
+};
+struct Header {
+  enum class Format { text, little_endian, big_endian };
+  Format format = Format::text;
+  std::vector<Element> elements;
+  std::size_t size = 0;  ///< bytes of the header, with the line end after end_header
+};
+
+/// Throws std::invalid_argument, with line and column, for a header that is not valid.
+Header read_header(const MeshBytes& file);
+
+}  // namespace pliant::ply

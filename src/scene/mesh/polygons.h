@@ -1,0 +1,22 @@
+// Faces of a file with any number of corners, and their division into triangles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "raw_mesh.h"
+
+namespace pliant {
+
+/// The faces of a file in its order. corners: vertex numbers of all faces, one face after the other; sizes:
+/// number of corners of each face, at least 3.
+struct Polygons {
+  std::vector<int> corners, sizes;
+};
+
+/// Appends the triangles of the polygons to a mesh. Convex polygons become fans about their first corner;
+/// other polygons lose ears until a triangle remains. Throws std::invalid_argument for a polygon of more than
+/// 1000 corners that is not convex, and for more than kMaxTriangles triangles. name: the file, for messages.
+void add_polygons(const Polygons& polygons, const std::string& name, RawMesh& mesh);
+
+}  // namespace pliant

@@ -1,0 +1,32 @@
+// A mesh as the reader of a file format returns it, and the bytes that a reader receives.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// Largest number of triangles of a mesh. One mesh of a glTF file can be at many nodes.
+inline constexpr std::size_t kMaxTriangles = 20'000'000;
+
+/// A file in memory. name: its path, for messages.
+struct MeshBytes {
+  std::string name, bytes;
+};
+
+struct RawMesh {
+  std::vector<Vec3<double>> vertices;         ///< finite
+  std::vector<std::array<int, 3>> triangles;  ///< numbers of existing vertices
+  std::vector<std::string> notes;             ///< what the reader has ignored, for the user
+};
+
+/// Returns "1 line is" or "2 lines are": a number with a noun and the verb.
+inline std::string count_text(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace pliant
