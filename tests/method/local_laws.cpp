@@ -84,6 +84,26 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a step that inverts an element of neo_hookean_log ends with a message that names the part",
+          "[local]") {
+  for (const char* law : {"neo_hookean_log", "corotated"}) {
+    MultiBody body;
+    Part& part = body.add<Primitive<Ellipsoid>>("heart", 3);
+    LocalSettings settings;
+    settings.resolution = 2;
+    // Both halves move towards each other, faster than waves in the material.
+    settings.velocity = [](const Vec3<double>& X) { return Vec3<double>(-300 * X[0], 0, 0); };
+    settings.energies.push_back(local_law(law, {300, 0.3}));
+    part.deform_locally(settings);
+    Simulation simulation(body, "rk4");
+    CHECK_THROWS_WITH(
+        [&] {
+          for (int i = 0; i < 1000; ++i) simulation.step(1e-3);
+        }(),
+        test::has_text("part 'heart'") && test::has_text(law) && test::has_text("inverted"));
+  }
+}
+
 TEST_CASE("damping of every law: K x_dot about rest, zero for rigid motion, never adds energy", "[local]") {
   test::Draws draws(6);
   for (const LocalLawInfo& law : all_local_laws()) {

@@ -289,11 +289,11 @@ const double* MidEdgeBending<Hinges>::compute_rotations(const Coordinates& x, co
   to.angles[n_angles() - 1] = 0;
   for_each_hinge_batch(pool, [&](int b) {
     const Corners corners = hinge_batches_.corners(x, b);
-    store(hinges_.angle(b, corners), to.angles + Pack::kLanes * b);
+    const HingeAngles angles = hinges_.angles(b, corners);
+    store(angles.change, to.angles + Pack::kLanes * b);
     if constexpr (Hinges::kOf == Of::position) {
-      const FoldTurn<Pack> turn = hinges_.turn(b, corners);
-      store(turn.slope, to.slopes + Pack::kLanes * b);
-      unwrap(b, turn.value, own, to);
+      store(angles.turn.slope, to.slopes + Pack::kLanes * b);
+      unwrap(b, angles.turn.value, own, to);
     }
   });
   if constexpr (Hinges::kOf != Of::position) return own;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <pliant/local/shell/hinges.h>
-#include <pliant/local/tensor.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {
@@ -16,8 +15,8 @@ PLIANT_INLINE LinearHinges::LinearHinges(const ElementBatches<4>& hinges, const 
   for (int b = 0; b < triangles.n_batches(); ++b) edges_.push_back(edges_of(triangles.corners(X, b)));
 }
 
-PLIANT_INLINE Pack LinearHinges::angle(int batch, const HingeCorners<Pack>& d) const {
-  return dot(gradients_[static_cast<std::size_t>(batch)], d);
+PLIANT_INLINE HingeAngles LinearHinges::angles(int batch, const HingeCorners<Pack>& d) const {
+  return {dot(gradients_[static_cast<std::size_t>(batch)], d), turn(batch, d)};
 }
 
 PLIANT_INLINE FoldingHinges::FoldingHinges(const ElementBatches<4>& hinges,
@@ -39,15 +38,10 @@ PLIANT_INLINE math::SinCos<Pack> FoldingHinges::change(int batch, const HingeCor
   return {now.sin * rest.cos - now.cos * rest.sin, now.cos * rest.cos + now.sin * rest.sin};
 }
 
-PLIANT_INLINE Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
-  const auto [s, c] = change(batch, x);
-  return {std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])};
-}
-
-PLIANT_INLINE FoldTurn<Pack> FoldingHinges::turn(int batch, const HingeCorners<Pack>& x) const {
+PLIANT_INLINE FoldTurn<Pack> FoldingHinges::turn(const math::SinCos<Pack>& change) {
+  const auto& [s, c] = change;
   FoldTurn<Pack> turn{0.0, 0.0, 0.0};
-  const auto [s, c] = change(batch, x);
-  if (min_lane(c) >= 0) return turn;  // no fold of more than a right angle
+  if (c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[3] >= 0) return turn;  // no fold of more than a right angle
   for (int lane = 0; lane < Pack::kLanes; ++lane) {
     const FoldTurn<double> one = fold_turn(std::atan2(s[lane], c[lane]));
     turn.value.set(lane, one.value);
@@ -55,6 +49,17 @@ PLIANT_INLINE FoldTurn<Pack> FoldingHinges::turn(int batch, const HingeCorners<P
     turn.curvature.set(lane, one.curvature);
   }
   return turn;
+}
+
+PLIANT_INLINE HingeAngles FoldingHinges::angles(int batch, const HingeCorners<Pack>& x) const {
+  const math::SinCos<Pack> of = change(batch, x);
+  const auto& [s, c] = of;
+  return {{std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])},
+          turn(of)};
+}
+
+PLIANT_INLINE FoldTurn<Pack> FoldingHinges::turn(int batch, const HingeCorners<Pack>& x) const {
+  return turn(change(batch, x));
 }
 
 }  // namespace pliant

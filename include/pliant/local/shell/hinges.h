@@ -13,17 +13,23 @@
 
 namespace pliant {
 
+/// dtheta (rad) of four hinges, and the terms g of their own coordinates (fold_turn.h).
+struct HingeAngles {
+  Pack change;
+  FoldTurn<Pack> turn;
+};
+
 /// Angles and strains linear in the displacements d: dtheta = dtheta/dx(rest) . d. X: positions at rest, m.
 class LinearHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::displacement;
   LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
-  /// Returns dtheta, rad, of four hinges with corner displacements d.
-  Pack angle(int batch, const HingeCorners<Pack>& d) const;
-  /// Returns the term g of the own coordinates (fold_turn.h): 0.
+  /// Returns the angles of four hinges with corner displacements d.
+  HingeAngles angles(int batch, const HingeCorners<Pack>& d) const;
+  /// Returns the term g of the own coordinates: 0.
   FoldTurn<Pack> turn(int, const HingeCorners<Pack>&) const { return {0.0, 0.0, 0.0}; }
-  /// Returns the gradient of angle(), 1/m.
+  /// Returns the gradient of dtheta, 1/m.
   const HingeCorners<Pack>& gradient(int batch, const HingeCorners<Pack>&) const {
     return gradients_[static_cast<std::size_t>(batch)];
   }
@@ -49,13 +55,15 @@ class FoldingHinges {
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::position;
   FoldingHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
-  Pack angle(int batch, const HingeCorners<Pack>& x) const;
+  HingeAngles angles(int batch, const HingeCorners<Pack>& x) const;
   FoldTurn<Pack> turn(int batch, const HingeCorners<Pack>& x) const;
   HingeCorners<Pack> gradient(int, const HingeCorners<Pack>& x) const { return hinge_gradient(x); }
   std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& x) const;
   Edges<Pack> edges(int, const std::array<Vec3<Pack>, 3>& x) const { return edges_of(x); }
 
  private:
+  /// Returns g of four hinges from the sine and cosine of dtheta.
+  static FoldTurn<Pack> turn(const math::SinCos<Pack>& change);
   /// Returns the sine and cosine of dtheta, both times a positive number.
   math::SinCos<Pack> change(int batch, const HingeCorners<Pack>& x) const;
 

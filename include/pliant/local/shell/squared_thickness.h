@@ -60,7 +60,7 @@ struct LogThickness {
     if (!(min_lane(D) > 0)) {
       std::ostringstream text;
       text << "a triangle with the law neo_hookean_log_membrane has no area (det C = " << min_lane(D)
-           << "), where the energy of this law is infinite; use a smaller step or a finer mesh";
+           << "), where the energy of this law is infinite";
       throw InvertedElement(text.str());
     }
     constexpr int max_iterations = 100;
