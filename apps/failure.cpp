@@ -75,13 +75,19 @@ constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution o
 
 /// Called instead of std::abort. Nothing here allocates memory.
 [[noreturn]] void on_terminate() {
+  bool out_of_memory = false;
   try {
-    if (const std::exception_ptr lost = std::current_exception()) std::rethrow_exception(lost);
+    if (std::current_exception()) throw;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
-    std::_Exit(kResources);
+    out_of_memory = true;
+  } catch (const std::system_error& fault) {
+    out_of_memory = fault.code() == std::errc::not_enough_memory;
   } catch (...) {
     // A fault of the program.
+  }
+  if (out_of_memory) {
+    std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
+    std::_Exit(kResources);
   }
   std::abort();
 }
@@ -118,11 +124,12 @@ int reporting_failures(const std::function<int()>& task) {
   } catch (const std::bad_alloc&) {
     return report(kOutOfMemoryText, kResources);
   } catch (const std::filesystem::filesystem_error& error) {
+    if (error.code() == std::errc::not_enough_memory) return report(kOutOfMemoryText, kResources);
     const std::string what = error.what(), label = "filesystem error: ";
     return report(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),
                   kFileSystem);
   } catch (const std::system_error& error) {
-    return report(error.what(), kFileSystem);
+    return report(error.what(), error.code() == std::errc::not_enough_memory ? kResources : kFileSystem);
   } catch (const std::invalid_argument& error) {
     return report(error.what(), kInput);
   } catch (const std::exception& error) {
