@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <typeinfo>
 #include <vector>
 
 #include <pliant/io/recording.h>
@@ -73,7 +74,13 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
 
 constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution or the number of parts";
 
-/// Called instead of std::abort. Nothing here allocates memory.
+/// Ends the program at once. A run is resumed as after a kill. Nothing here allocates memory.
+[[noreturn]] void end_without_memory() {
+  std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
+  std::_Exit(kResources);
+}
+
+/// Called instead of std::abort.
 [[noreturn]] void on_terminate() {
   bool out_of_memory = false;
   try {
@@ -85,16 +92,28 @@ constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution o
   } catch (...) {
     // A fault of the program.
   }
-  if (out_of_memory) {
-    std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
-    std::_Exit(kResources);
-  }
+  if (out_of_memory) end_without_memory();
   std::abort();
 }
 
 }  // namespace
 
-void report_lost_memory_failures() {
+// The linker option --wrap calls this function in place of __cxa_throw, which throws every exception. An
+// exception std::bad_alloc must not unwind the stack: Eigen 3.4 frees the memory of a matrix before it
+// allocates the new one, so that the destructor of the matrix would free the memory again.
+extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier)
+[[noreturn]] void __real___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*));
+[[noreturn]] void __wrap___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*));
+// NOLINTEND(bugprone-reserved-identifier)
+void __wrap___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*)) {
+  if (*type == typeid(std::bad_alloc)) end_without_memory();
+  __real___cxa_throw(exception, type, destroy);
+}
+}
+
+void end_if_memory_is_exhausted() {
+  std::set_new_handler(end_without_memory);
   std::set_terminate(on_terminate);
 }
 
