@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <typeinfo>
 #include <vector>
 
 #include <pliant/io/recording.h>
@@ -73,22 +74,46 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
 
 constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution or the number of parts";
 
-/// Called instead of std::abort. Nothing here allocates memory.
+/// Ends the program at once. A run is resumed as after a kill. Nothing here allocates memory.
+[[noreturn]] void end_without_memory() {
+  std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
+  std::_Exit(kResources);
+}
+
+/// Called instead of std::abort.
 [[noreturn]] void on_terminate() {
+  bool out_of_memory = false;
   try {
-    if (const std::exception_ptr lost = std::current_exception()) std::rethrow_exception(lost);
+    if (std::current_exception()) throw;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
-    std::_Exit(kResources);
+    out_of_memory = true;
+  } catch (const std::system_error& fault) {
+    out_of_memory = fault.code() == std::errc::not_enough_memory;
   } catch (...) {
     // A fault of the program.
   }
+  if (out_of_memory) end_without_memory();
   std::abort();
 }
 
 }  // namespace
 
-void report_lost_memory_failures() {
+// The linker option --wrap calls this function in place of __cxa_throw, which throws every exception. An
+// exception std::bad_alloc must not unwind the stack: Eigen 3.4 frees the memory of a matrix before it
+// allocates the new one, so that the destructor of the matrix would free the memory again.
+extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier)
+[[noreturn]] void __real___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*));
+[[noreturn]] void __wrap___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*));
+// NOLINTEND(bugprone-reserved-identifier)
+void __wrap___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*)) {
+  if (*type == typeid(std::bad_alloc)) end_without_memory();
+  __real___cxa_throw(exception, type, destroy);
+}
+}
+
+void end_if_memory_is_exhausted() {
+  std::set_new_handler(end_without_memory);
   std::set_terminate(on_terminate);
 }
 
@@ -118,11 +143,12 @@ int reporting_failures(const std::function<int()>& task) {
   } catch (const std::bad_alloc&) {
     return report(kOutOfMemoryText, kResources);
   } catch (const std::filesystem::filesystem_error& error) {
+    if (error.code() == std::errc::not_enough_memory) return report(kOutOfMemoryText, kResources);
     const std::string what = error.what(), label = "filesystem error: ";
     return report(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),
                   kFileSystem);
   } catch (const std::system_error& error) {
-    return report(error.what(), kFileSystem);
+    return report(error.what(), error.code() == std::errc::not_enough_memory ? kResources : kFileSystem);
   } catch (const std::invalid_argument& error) {
     return report(error.what(), kInput);
   } catch (const std::exception& error) {

@@ -17,9 +17,9 @@ class ResourceFailure : public std::runtime_error {
 /// error and returns the exit code for this exception (exit_codes.h).
 int reporting_failures(const std::function<int()>& task);
 
-/// Lets the program end with its message and exit code 8 if memory is exhausted where no exception can pass,
-/// for example in a destructor of a library.
-void report_lost_memory_failures();
+/// From now on the program ends at once with a message and exit code 8 if it cannot allocate memory, also
+/// where no exception can pass, for example in a destructor of a library. A run can then be resumed.
+void end_if_memory_is_exhausted();
 
 /// Prints on standard error why a command line cannot be parsed, and returns kCommandLine (exit_codes.h). If
 /// the command line asks for help or the version, prints the answer on standard output and returns kDone.

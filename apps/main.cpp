@@ -54,7 +54,7 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  pliant_cli::report_lost_memory_failures();
+  pliant_cli::end_if_memory_is_exhausted();
   return pliant_cli::reporting_failures([&] {
     const int code = run_command(argc, argv);
     if (!std::cout.flush())

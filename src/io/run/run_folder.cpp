@@ -27,11 +27,25 @@ bool exists_at_all(const fs::path& path) {
   return fs::symlink_status(path).type() != fs::file_type::not_found;
 }
 
-// Returns the paths of all files in a folder and its sub-folders, relative to the folder.
+/// Returns the entries of a folder. Opens the folder again if a signal interrupts the call.
+fs::directory_iterator entries_of(const fs::path& folder) {
+  for (;;) {
+    std::error_code error;
+    fs::directory_iterator entries(folder, error);
+    if (!error) return entries;
+    if (error != std::errc::interrupted) throw fs::filesystem_error("cannot read folder", folder, error);
+  }
+}
+
+/// Returns the paths of the files in a folder, and in its folders of meshes and of frames, relative to the
+/// folder.
 std::vector<fs::path> files_of(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_symlink() || !entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  for (const char* inner : {"", kMeshFolder, kFrameFolder}) {
+    if (!fs::is_directory(fs::symlink_status(folder / inner))) continue;
+    for (const fs::directory_entry& entry : entries_of(folder / inner))
+      if (entry.is_symlink() || !entry.is_directory()) files.push_back(inner / entry.path().filename());
+  }
   return files;
 }
 
@@ -79,13 +93,15 @@ fs::path create_unfinished(const fs::path& name) {
 void remove_unfinished_folders(const fs::path& folder) {
   std::vector<fs::path> unfinished;
   const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-  for (const fs::directory_entry& entry : fs::directory_iterator(parent)) {
+  for (const fs::directory_entry& entry : entries_of(parent)) {
     const std::string name = entry.path().filename().string();
     const int process = writing_process(name);
     if (process < 0 || finished_name(name) != folder.filename() || process_exists(process)) continue;
     if (!fs::is_directory(entry.symlink_status())) continue;
-    const std::vector<fs::path> files = files_of(entry.path());
-    if (std::all_of(files.begin(), files.end(), is_run_file)) unfinished.push_back(entry.path());
+    const fs::directory_iterator first = entries_of(entry.path()), end;
+    if (std::all_of(first, end,
+                    [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); }))
+      unfinished.push_back(entry.path());
   }
   for (const fs::path& path : unfinished) fs::remove_all(path);
 }
@@ -207,7 +223,7 @@ void RunFolder::create(const WriteOptions& write_options) {
 /// a run that may be resumed or replaced. Returns whether there are only leftovers.
 bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) const {
   bool leftovers = false, others = false;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+  for (const fs::directory_entry& entry : entries_of(folder_)) {
     if (is_leftover(entry.path().filename()))
       leftovers = true;
     else
@@ -233,11 +249,11 @@ bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) 
 /// processes that no longer exist are removed.
 void RunFolder::remove_unfinished_files() {
   std::vector<fs::path> unfinished;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+  for (const fs::directory_entry& entry : entries_of(folder_))
     if (is_unfinished(entry.path().filename())) unfinished.push_back(entry.path());
   for (const char* inner : {kMeshFolder, kFrameFolder}) {
     if (!fs::is_directory(fs::symlink_status(folder_ / inner))) continue;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / inner)) {
+    for (const fs::directory_entry& entry : entries_of(folder_ / inner)) {
       const std::string name = entry.path().filename().string();
       const int process = writing_process(name);
       if (process >= 0 && is_run_file(fs::path(inner) / name) && !process_exists(process))
