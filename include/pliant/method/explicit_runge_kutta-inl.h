@@ -95,7 +95,7 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
   const ButcherTableau& tableau = *tableau_;
   const double h = state.h, t = state.time();
   const int n = tableau.stages;
-  if (q_rates_.rows() != state.q.size()) {
+  if (powers_.cols() == 0 || q_rates_.rows() != state.q.size()) {
     last_.q.resize(0);
     const int additional = tableau.extension == nullptr ? 0 : tableau.extension->stages;
     q_rates_.resize(state.q.size(), n + 1 + additional);
