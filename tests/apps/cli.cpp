@@ -126,7 +126,7 @@ TEST_CASE(
       "run top.json --end 0.05 --integrator auto --tolerance 1e-6 --estimate-error --quiet -o out/e");
   CHECK(run.code == 0);
   CHECK(has(run.out, "largest differences from a more accurate run with a tolerance of 1e-07\n  position "));
-  CHECK(has(place.record("out/e").dump(), "integrator dop853: dop853 comes "));
+  CHECK(has(place.record("out/e").dump(), "integrator dop853: dop853 advances "));
   CHECK(place.record("out/e").at("error_estimate").at("rotation") > 0);
   const Result best = place.pliant("run top.json --tolerance 1e-12 --estimate-error -o out/best");
   CHECK(best.code == 3);

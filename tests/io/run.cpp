@@ -15,6 +15,7 @@
 #include "test_scenes.h"
 
 #include <pliant/body/joints/rod.h>
+#include <pliant/io/run/order_note.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/part/local/local_laws.h>
 
@@ -607,6 +608,37 @@ TEST_CASE("a bad scene is refused before a folder is created") {
   looks->appearance.clear();
   CHECK_THROWS_AS(run(*looks, folder / "r"), std::invalid_argument);
   CHECK_FALSE(fs::exists(folder / "r"));
+}
+
+TEST_CASE("a run by a method of first order states its error") {
+  const NewFolder folder;
+  const auto notes_of = [&](const char* name, const char* integrator, double step) {
+    const auto scene = pulled_scene();
+    scene->integrator = integrator;
+    scene->step = step;
+    REQUIRE(run(*scene, folder / name));
+    const auto notes = record_of(folder / name).at("notes");
+    return std::count_if(notes.begin(), notes.end(), [](const auto& note) {
+      return note.template get<std::string>().find("is a method of first order") != std::string::npos;
+    });
+  };
+  CHECK(notes_of("first", "semi_implicit_euler", 1e-3) == 1);
+  CHECK(notes_of("fourth", "rk4", 1e-3) == 0);
+  RunRecord record;
+  record.integrator = "semi_implicit_euler";
+  record.step = 1e-3;
+  record.max_kinetic = 2;
+  record.max_balance_error = 0.2;
+  CHECK(
+      order_note(record, 1) ==
+      "warning: semi_implicit_euler is a method of first order: the largest error of the energy balance is "
+      "10 % of the largest kinetic energy; steps of about 0.0001 s, or the integrator \"auto\", reduce it to "
+      "1 % or less");
+  record.max_balance_error = 0.002;
+  CHECK(order_note(record, 1) ==
+        "semi_implicit_euler is a method of first order: the largest error of the energy balance is 0.1 % of "
+        "the largest kinetic energy");
+  CHECK(order_note(record, 4).empty());
 }
 
 TEST_CASE("I59: runs without parts, or without duration, are valid") {

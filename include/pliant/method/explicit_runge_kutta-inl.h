@@ -100,7 +100,7 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
     const int additional = tableau.extension == nullptr ? 0 : tableau.extension->stages;
     q_rates_.resize(state.q.size(), n + 1 + additional);
     v_rates_.resize(state.v.size(), n + 1 + additional);
-    powers_.resize(kWorks, n + 1 + additional);
+    powers_.setZero(kWorks, n + 1 + additional);
   }
   free_.prepare(dynamics.model(), tableau, h);
   if (end_rates_valid(dynamics, t, state)) {

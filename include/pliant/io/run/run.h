@@ -28,7 +28,9 @@ struct RunOptions {
   std::string scene_file;            ///< path of the scene, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
   std::string graphics;              ///< graphics library, for run.json; empty without pictures
-  std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
+  /// Called before every step; true ends the run so that it can be resumed. Also called while the method of
+  /// integration is chosen; true then ends the constructor of Run.
+  std::function<bool()> stop;
 };
 
 /// A run in its folder. It uses end, step, tolerance, frame rate, integrator and picture size of the scene,
@@ -38,7 +40,8 @@ class Run {
   /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
   /// run locks and reads the folder. Throws std::invalid_argument (a bad scene), OutputRefused,
   /// RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame rate, or a
-  /// damaged recording), std::system_error. The scene must outlive the run.
+  /// damaged recording), std::system_error, ChoiceStopped (`stop` returned true; no file has been written).
+  /// The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
