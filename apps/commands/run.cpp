@@ -48,8 +48,10 @@ fs::path folder_of(const RunCommand& command) {
 }
 
 // Sets the options of the command line in the scene. A resumed run keeps its old settings, except those that
-// the command line sets. --step removes the tolerance. --tolerance without --integrator selects "auto" if the
-// method of the scene has no error control. "auto" without a tolerance gets the standard tolerance.
+// the command line sets. --step removes the tolerance; without --integrator it replaces "auto" by the method
+// of the paper. --integrator with a method of fixed steps replaces "auto" and its tolerance. --tolerance
+// without --integrator selects "auto" if the method of the scene has no error control. "auto" without a
+// tolerance gets the standard tolerance.
 void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& previous,
                    pliant::Scene& scene) {
   if (previous) {
@@ -66,14 +68,19 @@ void apply_options(const RunCommand& command, const std::optional<pliant::RunRec
   if (command.step) {
     scene.step = *command.step;
     scene.tolerance = 0;
+    if (scene.integrator == pliant::kAutomatic) scene.integrator = pliant::kFixedStepIntegrator;
   }
+  const bool was_automatic = scene.integrator == pliant::kAutomatic;
   if (!command.integrator.empty()) scene.integrator = command.integrator;
+  const std::vector<std::string> controlled = pliant::controlled_integrators();
+  const bool fixed_step =
+      scene.integrator != pliant::kAutomatic &&
+      std::find(controlled.begin(), controlled.end(), scene.integrator) == controlled.end();
   if (command.tolerance) {
     scene.tolerance = *command.tolerance;
-    const std::vector<std::string> controlled = pliant::controlled_integrators();
-    if (command.integrator.empty() &&
-        std::find(controlled.begin(), controlled.end(), scene.integrator) == controlled.end())
-      scene.integrator = pliant::kAutomatic;
+    if (command.integrator.empty() && fixed_step) scene.integrator = pliant::kAutomatic;
+  } else if (was_automatic && fixed_step) {
+    scene.tolerance = 0;
   }
   if (scene.integrator == pliant::kAutomatic && scene.tolerance == 0)
     scene.tolerance = pliant::kStandardTolerance;
@@ -179,7 +186,14 @@ int run_scene(const RunCommand& command) {
   options.scene_file = command.scene.file;
   options.command = command.command_line;
   options.stop = [] { return stop_signal() != 0; };
-  pliant::Run run(*scene, std::move(options), *progress);
+  std::optional<pliant::Run> prepared;
+  try {
+    prepared.emplace(*scene, std::move(options), *progress);
+  } catch (const pliant::ChoiceStopped&) {
+    std::cerr << "pliant: stopped while the integrator was chosen; nothing has been written\n";
+    return kSignal + stop_signal();
+  }
+  pliant::Run& run = *prepared;
   if (!command.quiet && scene->tolerance == 0 && std::isfinite(run.record().stable_step))
     progress->note("step " + pliant::number_text(run.record().step) +
                    " s; the largest stable step at the start is about " +

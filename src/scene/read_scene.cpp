@@ -85,7 +85,10 @@ class SceneReader {
     const Reader time = root_.object("time"), output = root_.object("output");
     scene_->end = time.number("end");
     scene_->step = time.number("step");
-    scene_->integrator = time.text("integrator");
+    if (time.given("integrator"))
+      scene_->integrator = time.text("integrator");
+    else
+      scene_->integrator = time.given("step") && !time.given("tolerance") ? kFixedStepIntegrator : kAutomatic;
     if (time.given("tolerance")) read_tolerance(time);
     if (scene_->integrator == kAutomatic && scene_->tolerance == 0) scene_->tolerance = kStandardTolerance;
     if (scene_->tolerance > 0 && time.given("step"))
@@ -112,7 +115,6 @@ class SceneReader {
 
   void read_tolerance(const Reader& time) {
     scene_->tolerance = time.number("tolerance");
-    if (!time.given("integrator")) scene_->integrator = kAutomatic;
     if (scene_->integrator == kAutomatic) return;
     const std::vector<std::string> controlled = controlled_integrators();
     if (std::find(controlled.begin(), controlled.end(), scene_->integrator) != controlled.end()) return;

@@ -93,6 +93,29 @@ TEST_CASE("a balloon dropped on a plane comes to rest on it, and the plane carri
   }
 }
 
+TEST_CASE("energy lost by a spinning balloon that bounces converges with the step of linearly_implicit",
+          "[contact][implicit][long]") {
+  std::vector<double> lost;
+  double kinetic = 0;
+  for (const double h : {1e-3, 5e-4, 2.5e-4}) {
+    MultiBody body;
+    auto& part = body.add<Primitive<Sphere>>("balloon", 1.0);
+    part.make_shell().rest({{"r", 0.1}}).place({0, 0, 0.15}).velocity({0.5, 0, -3}, {3, 20, 0});
+    LocalSettings settings;
+    settings.resolution = 2;
+    settings.energies = {local_law("neo_hookean_membrane", {1e5, 0.5, 1e-3}), local_law("pressure", {200})};
+    part.deform_locally(settings);
+    body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+    Simulation simulation(body, "linearly_implicit");
+    kinetic = simulation.ledger().kinetic;
+    test::run(simulation, 0.1, static_cast<int>(std::lround(0.1 / h)));
+    lost.push_back(std::abs(simulation.ledger().balance));
+  }
+  CAPTURE(kinetic, lost);
+  CHECK(test::observed_order(lost) >= 1.8);
+  CHECK(lost.back() <= 0.01 * kinetic);
+}
+
 TEST_CASE("balloons that collide conserve their momenta, lose energy, and do not overlap", "[contact]") {
   MultiBody body;
   body.gravity.setZero();

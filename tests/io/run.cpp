@@ -609,6 +609,23 @@ TEST_CASE("a bad scene is refused before a folder is created") {
   CHECK_FALSE(fs::exists(folder / "r"));
 }
 
+TEST_CASE("a run by a method of first order states its error") {
+  const NewFolder folder;
+  const auto notes_of = [&](const char* name, const char* integrator, double step) {
+    const auto scene = pulled_scene();
+    scene->integrator = integrator;
+    scene->step = step;
+    REQUIRE(run(*scene, folder / name));
+    const auto notes = record_of(folder / name).at("notes");
+    return std::count_if(notes.begin(), notes.end(), [](const auto& note) {
+      return note.template get<std::string>().find("The method semi_implicit_euler is of order 1.") !=
+             std::string::npos;
+    });
+  };
+  CHECK(notes_of("first", "semi_implicit_euler", 1e-3) == 1);
+  CHECK(notes_of("fourth", "rk4", 1e-3) == 0);
+}
+
 TEST_CASE("I59: runs without parts, or without duration, are valid") {
   const NewFolder folder;
   Scene empty;

@@ -1,6 +1,7 @@
 // Checks of every energy of local deformation at coordinates x: the force is minus the gradient of the
-// energy, add_derivative() adds the derivative of the force, and add_stiffness() agrees with it. Results have
-// the same bits for any number of threads. The frequency bound is valid.
+// energy, add_derivative() adds the derivative of the force, and add_stiffness() agrees with it.
+// add_viscosity() agrees with add_viscous_force(). Results have the same bits for any number of threads. The
+// frequency bound is valid.
 #pragma once
 
 #include <vector>
@@ -67,6 +68,16 @@ inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   const VecX<double> K_dx = derivative(energy, x, dx);
   CHECK((K * dx + K_dx).norm() <= 1e-12 * K_dx.norm());
   CHECK((K - Eigen::SparseMatrix<double>(K.transpose())).norm() <= 1e-13 * K.norm());
+  std::vector<Eigen::Triplet<double>> entries;
+  energy.add_viscosity(x, entries);
+  Eigen::SparseMatrix<double> V(x.size(), x.size());
+  V.setFromTriplets(entries.begin(), entries.end());
+  VecX<double> viscous = VecX<double>::Zero(x.size());
+  NodalEnergy::Buffer buffer;
+  energy.add_viscous_force(x, dx, viscous, buffer, nullptr);
+  CHECK((V * dx + viscous).norm() <= 1e-12 * viscous.norm());
+  CHECK((V - Eigen::SparseMatrix<double>(V.transpose())).norm() <= 1e-13 * V.norm());
+  CHECK(viscous.dot(dx) <= 0);
 }
 
 /// Checks that the number of threads does not change a bit of the results. The mesh must have more elements

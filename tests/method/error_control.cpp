@@ -259,6 +259,21 @@ TEST_CASE("a stiff shell that spins is integrated to the tolerance, with few cha
   }
 }
 
+TEST_CASE("the trials of a choice can be stopped, and have a limited number of evaluations", "[error]") {
+  MultiBody body;
+  test::tumbling_solid(body);
+  int calls = 0;
+  CHECK_THROWS_AS(Simulation(body, kAutomatic, 1, 1e-6, [&] { return ++calls > 10; }), ChoiceStopped);
+  CHECK(calls == 11);
+  // The trial of one of the candidates takes at least 48 steps if it is not limited.
+  MultiBody whole;
+  test::tumbling_solid(whole);
+  int unlimited = 0;
+  Simulation(whole, kAutomatic, 1, 1e-6, [&] { return ++unlimited < 0; });
+  CHECK(unlimited >= 96);
+  CHECK(evaluation_cost(*body.parts()[0]) > 0);
+}
+
 TEST_CASE("the method is chosen by the stiffness of the model, the tolerance and the contacts", "[error]") {
   auto chosen = [](const std::function<void(MultiBody&)>& build) {
     MultiBody body;

@@ -276,6 +276,47 @@ TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and closed jo
   }
 }
 
+TEST_CASE("a scene without an integrator uses auto, or the method of the paper if it gives a step") {
+  const auto scene_with = [](const std::string& time) {
+    pliant::Diagnostics diagnostics;
+    auto scene = pliant::parse_scene("s.json", "{\"parts\": [], \"time\": " + time + "}", {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    return scene;
+  };
+  for (const char* time : {"{}", "{\"end\": 2}"}) {
+    const auto scene = scene_with(time);
+    CHECK(scene->integrator == pliant::kAutomatic);
+    CHECK(scene->tolerance == pliant::kStandardTolerance);
+  }
+  CHECK(scene_with("{\"tolerance\": 1e-4}")->integrator == pliant::kAutomatic);
+  const auto stepped = scene_with("{\"step\": 0.01}");
+  CHECK(stepped->integrator == pliant::kFixedStepIntegrator);
+  CHECK(stepped->tolerance == 0);
+  CHECK(scene_with("{\"integrator\": \"rk4\"}")->tolerance == 0);
+}
+
+TEST_CASE("a tumbling bat keeps its energy with the default settings") {
+  // Dzhanibekov's effect: the bat spins about its middle axis and flips every 4.7192 s.
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::parse_scene("bat.json", R"json({
+    "gravity": [0, 0, 0], "time": {"end": 60},
+    "parts": [{"name": "bat", "shape": "box", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.05},
+               "angular_velocity": [0.02, 5, 0]}]})json",
+                                         {}, diagnostics);
+  pliant::Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
+  const double start = simulation.ledger().energy();
+  int flips = 0;
+  double last = 5;
+  while (simulation.time() < scene->end) {
+    simulation.step_up_to(scene->end);
+    const double now = simulation.state().v[4];
+    flips += std::abs(now) > 1 && now * last < 0 ? 1 : 0;
+    if (std::abs(now) > 1) last = now;
+  }
+  CHECK(flips == 13);
+  CHECK(simulation.ledger().energy() == Approx(start).epsilon(1e-5));
+}
+
 TEST_CASE("I59: a scene without parts, and a scene that ends at time 0, are read") {
   for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
     pliant::Diagnostics diagnostics;

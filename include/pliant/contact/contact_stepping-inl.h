@@ -159,6 +159,17 @@ struct ContactStepping::Motion {
 };
 
 PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step, double tolerance) {
+  if (meshes_.empty() || !method.local_is_implicit()) return step_once(method, step, tolerance);
+  const Before before{step.state, record_, recorded_, step.counters};
+  soft_may_touch_ = false;
+  const double length = step_once(method, step, tolerance);
+  if (soft_may_touch_ && length == before.state.h && step.state.q.allFinite() && step.state.v.allFinite())
+    extrapolate_soft_step(method, step, before, length, tolerance);
+  return length;
+}
+
+/// Performs the stages of a step.
+PLIANT_INLINE double ContactStepping::step_once(Integrator& method, StepContext& step, double tolerance) {
   State& state = step.state;
   const double start = state.start, h = state.h;
   const std::int64_t number = state.step;
@@ -241,6 +252,7 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progres
   Motion motion;
   motion.predicted = look_ahead(state, now, length, progress.gravity_reach(), progress.soft_nearby);
   if (!meshes_.empty()) progress.method.expect_touch(motion.predicted.soft);
+  soft_may_touch_ = soft_may_touch_ || motion.predicted.soft;
   if (!(motion.predicted.h > remaining / contact_stepping::kMaxMotions)) fail_too_fast(progress);
   FreeMotion& free = motion.free;
   free.begin = now;

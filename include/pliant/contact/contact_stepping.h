@@ -41,7 +41,9 @@ class ContactStepping {
   /// Returns the length of the step, s. The caller increments State::step. tolerance: that of the simulation,
   /// or 0 if there is none. With a tolerance the step ends at the first event after its start: an impact, or
   /// a change of friction (FrictionEvents). In models with few moving parts it also ends after a motion with
-  /// resting contacts, or with contacts whose time was not located.
+  /// resting contacts, or with contacts whose time was not located. A step in which a method with implicit
+  /// elasticity brings parts that deform locally near other bodies is of first order; it is repeated as two
+  /// halves and extrapolated (extrapolate_soft_step).
   double step(Integrator& method, StepContext& step, double tolerance = 0);
   /// Repeats a step with resting or unlocated contacts as two half steps. If both results agree in modes and
   /// contacts and the error is at most 1, extrapolates from both (Richardson). Impulses that stand for forces
@@ -83,6 +85,7 @@ class ContactStepping {
   class StageClock;
   struct Progress;
   struct Motion;
+  double step_once(Integrator& method, StepContext& step, double tolerance);
   Progress begin(Integrator& method, StepContext& step, double tolerance);
   Motion advance(Progress& progress);
   Motion predict(Progress& progress);
@@ -121,7 +124,17 @@ class ContactStepping {
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
   void include_openings(std::size_t first, double t, double h, State& state) const;
-  void extrapolate(StepContext& step, const State& whole, std::size_t second);
+  void extrapolate(StepContext& step, const State& whole, std::size_t second, const std::vector<int>& parts,
+                   const State* start);
+  /// Values at the start of a step that may be repeated.
+  struct Before {
+    State state;
+    ContactRecord record;
+    double recorded;  ///< s
+    StepCounters counters;
+  };
+  void extrapolate_soft_step(Integrator& method, StepContext& step, const Before& before, double length,
+                             double tolerance);
 
   const Dynamics& dynamics_;
   ContactFinder finder_;
@@ -140,6 +153,8 @@ class ContactStepping {
   std::vector<Contact> resting_at_start_;
   bool has_unlocated_ = false;
   bool at_friction_event_ = false;  ///< whether the last step ended at a change of friction
+  /// Whether in the last step a part that deforms locally could touch something.
+  bool soft_may_touch_ = false;
   StageTimes times_;
 };
 

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include <pliant/body/advance.h>
+#include <pliant/body/step_failure.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/impact_timing.h>
 #include <pliant/contact/longest_contact_step.h>
@@ -37,6 +38,19 @@ inline constexpr double kJumpInGravity = 0.6;
 inline constexpr double kMaxLeftGap = 1000;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
+
+/// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
+/// step with the share s is b(s) = halves + s (halves - whole) + s (1 + s) / 2 excess, if energies are
+/// quadratic. halves, whole: balances of both results, J, negative if they lose energy. extrapolated: b(1),
+/// J.
+inline double share_without_gain(double halves, double whole, double extrapolated) {
+  if (!(extrapolated > 0)) return 1;
+  if (!(halves < 0)) return extrapolated <= halves ? 1 : 0;
+  const double half_excess = 0.5 * (extrapolated - 2 * halves + whole), slope = halves - whole + half_excess;
+  if (!(half_excess > 0)) return std::clamp(-halves / slope, 0.0, 1.0);
+  return std::clamp((std::sqrt(slope * slope - 4 * half_excess * halves) - slope) / (2 * half_excess), 0.0,
+                    1.0);
+}
 
 /// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more
 /// than max_speed, m/s. dv: differences of the velocities of all parts.
@@ -115,9 +129,58 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   if (agreed && !whole.has_event && error <= 1) {
     StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
                        halves.length);
-    extrapolate(at_end, whole.state, halves.first_contacts);
+    extrapolate(at_end, whole.state, halves.first_contacts, parts_touched(model, record_.contacts), nullptr);
   }
   return {error, order, halves.length};
+}
+
+/// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). Such
+/// a step of linearly_implicit is one of linearly implicit Euler, which damps oscillations by a rate of half
+/// of omega^2 h. The extrapolation has second order, and damps by a rate of order h^3. Nodes whose contacts
+/// differ between both results are light, so that their errors are small. If rigid contacts or modes differ,
+/// the result is that of the halves; if the halves fail, it is that of the whole step.
+PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, StepContext& step,
+                                                          const Before& before, double length,
+                                                          double tolerance) {
+  const Model& model = dynamics_.model();
+  State& state = step.state;
+  const auto rigid_contacts = [&](std::size_t from, std::size_t to) {
+    return std::count_if(record_.contacts.begin() + static_cast<std::ptrdiff_t>(from),
+                         record_.contacts.begin() + static_cast<std::ptrdiff_t>(to),
+                         [](const Contact& c) { return !c.a.at_nodes() && !c.b.at_nodes(); });
+  };
+  const std::size_t first = before.record.contacts.size();
+  const auto rigid = rigid_contacts(first, record_.contacts.size());
+  const Whole whole{state, length, resting_at_start_, record_.contacts.size() - first, false};
+  const ContactRecord record = record_;
+  const double recorded = recorded_;
+  state = before.state;
+  record_ = before.record;
+  recorded_ = before.recorded;
+  step.counters.impacts = before.counters.impacts;
+  step.counters.sequential_impacts = before.counters.sequential_impacts;
+  Halves halves;
+  try {
+    halves = step_halves(method, step, whole, before.state, tolerance);
+  } catch (const StepFailure&) {
+    halves.finite = false;
+  }
+  if (!halves.finite || halves.length != length) {
+    state = whole.state;
+    record_ = record;
+    recorded_ = recorded;
+    return;
+  }
+  if (state.at_limit != whole.state.at_limit || state.joints != whole.state.joints ||
+      !same_sleepers(state.at_rest, whole.state.at_rest) ||
+      rigid_contacts(halves.first_contacts, record_.contacts.size()) != rigid)
+    return;
+  std::vector<int> parts;
+  for (std::size_t i = 0; i < model.parts().size(); ++i)
+    if (model.parts()[i].q0 >= 0 && !(state.at_rest.size() > i && state.at_rest[i] < 0))
+      parts.push_back(static_cast<int>(i));
+  StepContext at_end(dynamics_, state, step.work, step.counters, before.state.time() + length, length);
+  extrapolate(at_end, whole.state, halves.first_contacts, parts, &before.state);
 }
 
 /// Repeats the step from `initial` as two halves; step.state is the state at their end.
@@ -129,7 +192,7 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   auto advance_by = [&](double into, double h) {
     set_step(state, start + into, h);
     StepContext part(dynamics_, state, step.work, step.counters);
-    return this->step(method, part, tolerance);
+    return step_once(method, part, tolerance);
   };
   Halves halves;
   halves.first = halves.length = advance_by(0, half);
@@ -215,25 +278,45 @@ PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t
   }
 }
 
-/// Extrapolates the state of the parts in contact, at the end of the two halves, by Richardson. whole: the
-/// state at the end of the whole step. second: number of the first contact of the second half in the record.
-PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second) {
+/// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
+/// end of the whole step. second: number of the first contact of the second half in the record. start: if not
+/// nullptr, the state at the start of the step; the result then stays nearer to the halves where
+/// extrapolation would add energy, for example because a node is in contact in one of both results only.
+PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second,
+                                                const std::vector<int>& parts, const State* start) {
   const Model& model = dynamics_.model();
   State& state = step.state;
   const double t = step.t;
-  const std::vector<int> parts = parts_touched(model, record_.contacts);
-  auto energy_of = [&](const State& at_end) {
-    return dynamics_.energy(t, at_end.q, at_end.v, parts, scratch_);
+  const State halves = state;
+  auto energy_of = [&](const State& at_time) {
+    return dynamics_.energy(t, at_time.q, at_time.v, parts, scratch_);
   };
-  const double energy = 2 * energy_of(state) - energy_of(whole);
-  state.work += state.work - whole.work;
-  const double work_before = state.work.sum();
-  for (const int i : parts) {
-    const PartModel& m = model.parts()[at(i)];
-    state.q.segment(m.q0, m.n_q()) += state.q.segment(m.q0, m.n_q()) - whole.q.segment(m.q0, m.n_q());
-    state.v.segment(m.v0, m.n_v()) += state.v.segment(m.v0, m.n_v()) - whole.v.segment(m.v0, m.n_v());
+  auto move_on = [&](double share) {
+    for (const int i : parts) {
+      const PartModel& m = model.parts()[at(i)];
+      const auto add = [&](auto& x, const auto& fine, const auto& coarse, int first, int n) {
+        x.segment(first, n) =
+            fine.segment(first, n) + share * (fine.segment(first, n) - coarse.segment(first, n));
+      };
+      add(state.q, halves.q, whole.q, m.q0, m.n_q());
+      add(state.v, halves.v, whole.v, m.v0, m.n_v());
+    }
+    normalise_rotations(model, state.q);
+  };
+  const double of_halves = energy_of(halves), of_whole = energy_of(whole);
+  double share = 1;
+  move_on(share);
+  if (start != nullptr) {
+    const double before = energy_of(*start) - start->work.sum(),
+                 balance_of_halves = of_halves - halves.work.sum() - before,
+                 balance_of_whole = of_whole - whole.work.sum() - before,
+                 balance = energy_of(state) - (2 * halves.work.sum() - whole.work.sum()) - before;
+    share = step_doubling::share_without_gain(balance_of_halves, balance_of_whole, balance);
+    if (share < 1) move_on(share);
   }
-  normalise_rotations(model, state.q);
+  const double energy = (1 + share) * of_halves - share * of_whole;
+  state.work += share * (halves.work - whole.work);
+  const double work_before = state.work.sum();
   resolution_.reconcile(step, parts);
   project_limits(step);
   include_openings(second, t, step.h, state);

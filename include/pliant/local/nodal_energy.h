@@ -55,6 +55,10 @@ class NodalEnergy {
   }
   /// Appends the entries of K(x), without the dense term w w^T with w = rank_one(x).
   virtual void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
+  /// Appends the entries of the symmetric matrix V(x) of add_viscous_force(), whose force is -V(x) x_dot.
+  virtual void add_viscosity(const Coordinates& x, std::vector<Eigen::Triplet<double>>& V) const {
+    add_stiffness(x, V);
+  }
   /// Returns w of the dense term w w^T of K; an empty vector if K has no dense term.
   virtual VecX<double> rank_one(const Coordinates& /*x*/) const { return {}; }
   /// Returns an upper bound on omega^2 (1/s^2) of K(x) u = omega^2 M u, computed element by element. M:

@@ -95,12 +95,12 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
   const ButcherTableau& tableau = *tableau_;
   const double h = state.h, t = state.time();
   const int n = tableau.stages;
-  if (q_rates_.rows() != state.q.size() || q_rates_.cols() == 0) {
+  if (powers_.cols() == 0 || q_rates_.rows() != state.q.size()) {
     last_t_ = kNoTime;
     const int additional = tableau.extension == nullptr ? 0 : tableau.extension->stages;
     q_rates_.resize(state.q.size(), n + 1 + additional);
     v_rates_.resize(state.v.size(), n + 1 + additional);
-    powers_.resize(kWorks, n + 1 + additional);
+    powers_.setZero(kWorks, n + 1 + additional);
   }
   free_.prepare(dynamics.model(), tableau, h);
   if (end_rates_valid(dynamics, t, state)) {

@@ -63,6 +63,10 @@ struct GroundSetting {
       height;  ///< z of the ground, m; just below the lowest point of the motion when absent
 };
 
+/// The integrator of a scene that gives a step but no integrator: the method of the paper. A scene that gives
+/// neither is integrated by kAutomatic to kStandardTolerance.
+inline constexpr const char* kFixedStepIntegrator = "semi_implicit_euler";
+
 struct Scene {
   std::string name;         ///< given in the scene, or the file name without its extension
   std::string description;  ///< the behaviour that the scene demonstrates
@@ -76,7 +80,7 @@ struct Scene {
   double step = 1e-3;  ///< fixed time step, s; ignored if tolerance > 0
   double tolerance =
       0;  ///< bound on the error of a step, see Simulation; 0: fixed steps without error control
-  std::string integrator = "semi_implicit_euler";
+  std::string integrator = kFixedStepIntegrator;
   double frame_rate = 25;  ///< recorded states and pictures per second
   /// Whether trajectory.csv has columns for every part and joint; when absent, only for up to
   /// TrajectoryTable::kMaxParts parts.

@@ -37,21 +37,35 @@ inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
 /// These steps are at most of second order for every method.
 inline constexpr double kCoarse = 1e-6;
+/// Estimated time of a trial, microseconds, after which it ends, and the least number of evaluations of a
+/// trial. Small models do not reach this time.
+inline constexpr double kTrialTime = 5e6, kMinEvaluations = 100;
 /// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
+
+/// Returns the largest number of evaluations of a trial.
+inline double most_evaluations(const Model& model) {
+  double cost = 0;
+  for (const PartModel& m : model.parts())
+    if (m.q0 >= 0) cost += evaluation_cost(*m.part);
+  return std::max(kMinEvaluations, kTrialTime / std::max(cost, 1.0));
+}
 
 /// Returns the simulated time (s) per cost of a trial of a method; 0 if the method fails. The cost is the
 /// number of evaluations of the accelerations, plus the cost of factorisations and solves in evaluations.
 /// factorisation: cost of one factorisation, in evaluations.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
-                   double factorisation) {
+                   double factorisation, const std::function<bool()>& stop) {
   State state = start;
   Workspace<double> work;
   StepCounters counters, before;
   const int order = method.error_order();
   const StepError failed{std::numeric_limits<double>::infinity(), order, 0};
   method.measure(&scale);
+  const double max_evaluations = most_evaluations(dynamics.model());
   auto attempt = [&] {
+    if (stop && stop()) throw ChoiceStopped();
+    if (static_cast<double>(counters.evaluations) > max_evaluations) return failed;
     try {
       StepContext step(dynamics, state, work, counters);
       method.step(step);
@@ -71,12 +85,16 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
   double timed_from = start.time();
   int first_timed = 0, steps = 0;
   for (; steps < max_steps && state.time() < end; ++steps) {
+    if (static_cast<double>(counters.evaluations) > max_evaluations) break;
     if (steps == max_steps / kShares) {
       timed_from = state.time();
       first_timed = steps;
       before = counters;
     }
-    if (!take_controlled_step(state, end, 0, growth, counters, attempt)) return 0;
+    if (!take_controlled_step(state, end, 0, growth, counters, attempt)) {
+      if (!(static_cast<double>(counters.evaluations) > max_evaluations)) return 0;
+      break;
+    }
   }
   const auto evaluations = static_cast<double>(counters.evaluations - before.evaluations),
              factored = static_cast<double>(counters.factorisations - before.factorisations);
@@ -84,8 +102,18 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
          (evaluations + factorisation * (factored + kSolves * (steps - first_timed)));
 }
 
-/// Returns whether the model has springs, or a moving part with elasticity, damping or drag.
-inline bool has_stiffness(const Model& model) {
+}  // namespace integrator_choice
+
+PLIANT_INLINE double evaluation_cost(const Part& part) {
+  // Costs for each part, for each mass point and parameter, and for each strain point.
+  constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2;
+  double cost = part_alone + point_and_parameter * part.mass_points().n_points * part.n_s();
+  if (part.continuum() != nullptr) cost += strain_point * part.continuum()->points().n_points;
+  if (part.local() != nullptr) cost += part.local()->cost();
+  return cost;
+}
+
+PLIANT_INLINE bool has_stiffness(const Model& model) {
   if (!model.springs().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
     const Part& part = *m.part;
@@ -94,12 +122,10 @@ inline bool has_stiffness(const Model& model) {
   });
 }
 
-}  // namespace integrator_choice
-
 PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale,
-                                                 const State& start) {
+                                                 const State& start, const std::function<bool()>& stop) {
   const Model& model = dynamics.model();
-  if (!integrator_choice::has_stiffness(model)) {
+  if (!has_stiffness(model)) {
     if (model.body().contact.active && scale.tolerance() >= integrator_choice::kCoarse)
       return {"dormand_prince",
               "nothing is elastic or damped, and for a tolerance this coarse steps with contact need no "
@@ -126,7 +152,7 @@ PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const
   reason.precision(2);
   for (const auto& [name, factorisation] : candidates) {
     const std::unique_ptr<Integrator> method = make_integrator(name);
-    const double speed = integrator_choice::pace(*method, dynamics, scale, start, factorisation);
+    const double speed = integrator_choice::pace(*method, dynamics, scale, start, factorisation, stop);
     reason << (best.integrator.empty() ? "" : ", ") << name << " advances " << speed
            << " s per evaluation of the accelerations";
     if (speed > fastest) best.integrator = name;

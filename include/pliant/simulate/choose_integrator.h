@@ -4,6 +4,8 @@
 // the accelerations; no time is measured.
 #pragma once
 
+#include <functional>
+#include <stdexcept>
 #include <string>
 
 #include <pliant/method/integrator.h>
@@ -15,13 +17,29 @@ inline constexpr const char* kAutomatic = "auto";
 /// The tolerance that is used with kAutomatic if none is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
+/// Returns whether the model has springs, or a moving part with elasticity, damping or drag.
+bool has_stiffness(const Model& model);
+
 struct IntegratorChoice {
   std::string integrator;
   std::string why;  ///< the reason, as text
 };
 
+/// A caller ended the choice: its function `stop` returned true.
+class ChoiceStopped : public std::runtime_error {
+ public:
+  ChoiceStopped() : std::runtime_error("the choice of the integrator was stopped") {}
+};
+
+/// Returns a lower bound of the time of one evaluation of a part on one core, microseconds. The constants
+/// were measured with bench/step_bench, so that the result is the same on every machine.
+double evaluation_cost(const Part& part);
+
 /// Returns the choice. If all candidates fail, it is the first candidate, dop853; between equal candidates it
-/// is the first one. start: the state at time 0, with engaged joints.
-IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start);
+/// is the first one. start: the state at time 0, with engaged joints. stop: called before every step of a
+/// trial; may be empty. Throws ChoiceStopped if it returns true. The number of evaluations of each trial is
+/// limited, so that the trial of a large model takes some seconds.
+IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start,
+                                   const std::function<bool()>& stop);
 
 }  // namespace pliant

@@ -70,7 +70,7 @@ auto at_time(double t, F&& act) {
 }  // namespace simulation
 
 PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads,
-                                     double tolerance)
+                                     double tolerance, const std::function<bool()>& stop)
     : model_(body),
       pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
       dynamics_(model_, pool_.get()),
@@ -98,7 +98,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
     if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
     switching_.engage(start, std::vector<bool>(model_.islands().size(), true));
     if (automatic) {
-      choice_ = choose_integrator(dynamics_, *scale_, state_);
+      choice_ = choose_integrator(dynamics_, *scale_, state_, stop);
       set_method(make_integrator(choice_.integrator));
     }
     start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();

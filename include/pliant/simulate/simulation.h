@@ -1,6 +1,7 @@
 // Simulation: a model, its state and a method of integration. simulation-inl.h lists the stages of a step.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -31,9 +32,10 @@ class Simulation {
   /// the length of the steps; with kAutomatic, tolerance 0 means kStandardTolerance. Throws
   /// std::invalid_argument for an invalid model, method or tolerance, and for a tolerance with a method that
   /// has no error estimate. Throws UnsatisfiableModel if joints contradict each other, and NumericalFailure
-  /// if the initial state cannot be evaluated or projected.
+  /// if the initial state cannot be evaluated or projected. stop: called during the trials of kAutomatic; the
+  /// constructor throws ChoiceStopped if it returns true.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
-                      double tolerance = 0);
+                      double tolerance = 0, const std::function<bool()>& stop = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;  // dynamics_ refers to model_
   Simulation& operator=(const Simulation&) = delete;
@@ -134,16 +136,12 @@ class Simulation {
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
 /// nothing limits the step. The step is limited by
-///   - the linearised elasticity and damping of global parameters and springs,
-///   - local elasticity,
-///   - the fastest oscillation of parts on joints,
+///   - the eigenvalues of the linearised equations of motion, with elasticity, damping, springs and joints,
 ///   - Baumgarte's terms with constant gains, if a joint is open or not projected,
 ///   - a rotation of half a radian per step,
 ///   - one radian of phase per step of each mode, if contact is active.
-/// Parts that springs connect are limited together. Parts of large groups are limited separately, with twice
-/// the stiffness of each spring to another moving part. The limits of elasticity ignore joints, which only
-/// reduce the frequencies. Both simplifications can only make the result smaller. If the method integrates
-/// local elasticity implicitly, only springs, drag and rotation limit the parts that deform locally.
+/// If the method integrates local elasticity implicitly, only springs, drag and rotation limit the parts that
+/// deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -1,6 +1,6 @@
-// Function bodies of stable_step.h: M, K and D of each group of parts that springs connect, and the largest
-// step for which the growth of the method is at most 1. The growth is the largest factor by which one step
-// multiplies a solution of M x_ddot + D x_dot + K x = 0.
+// Function bodies of stable_step.h: the eigenvalues of the motion about the state, and the largest step for
+// which the growth of the method is at most 1 for each of them. The growth is the largest factor by which one
+// step multiplies a solution of x_ddot + D x_dot + K x = 0.
 #pragma once
 
 #include <pliant/simulate/stable_step.h>
@@ -8,85 +8,54 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <sstream>
+#include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
-#include <pliant/math/eigenvalues.h>
 #include <pliant/math/header_only.h>
 #include <pliant/method/free_oscillation.h>
-#include <pliant/simulate/fastest_sway.h>
+#include <pliant/simulate/choose_integrator.h>
+#include <pliant/simulate/fast_motion.h>
 
 namespace pliant {
 
 namespace stability {
 
-/// If a group of parts has more velocities than this, each part limits the step separately.
-inline constexpr int kMaxGroupVelocities = 120;
 /// Largest rotation of a part in a step, rad.
 inline constexpr double kMaxRotation = 0.5;
-/// Largest change of phase of a mode in a step, rad. In longer steps, impacts add energy, because they act on
-/// a mode as on a free body.
+/// Largest change of phase of a mode in a step, rad, if impacts or springs act on it. In longer steps they
+/// may add energy, because they act on a mode as on a free body.
 inline constexpr double kMaxPhase = 1;
+/// The Krylov space of the eigenvalues grows by kVectors vectors until the residual of the eigenvalue that
+/// limits the step is at most kResidual. The errors of eigenvalues are then of second order in the residual.
+inline constexpr int kVectors = 20;
+inline constexpr double kResidual = 0.02;
+/// If the residual is above kExact, the eigenvalue is increased by the residual and by kMargin, at most by
+/// kMaxMargin, so that the step is safe.
+inline constexpr double kExact = 1e-3, kMargin = 0.01, kMaxMargin = 0.05;
+/// Real eigenvalues that limit the step to at most this multiple of the smallest limit are examined by the
+/// resistance against their motion, at most kMaxExamined of them.
+inline constexpr double kNearLimit = 1.25;
+inline constexpr std::size_t kMaxExamined = 12;
+/// A residual above this share is reported.
+inline constexpr double kReported = 0.3;
+/// If the accelerations deform or turn a part by more than this in one stable step, in sizes of the part or
+/// radians, the start is far from equilibrium.
+inline constexpr double kFar = 0.5;
 
-/// Returns L of Eq. (9) at a port, an attachment point of a part: the velocity of the port in the world frame
-/// is L v with v = (R^T c_dot, omega, q_s_dot), m/s. Size: 3 x (6 + n_s), n_s: number of dynamic parameters.
-inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
-  const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
-  MatX<double> L(3, 6 + m.n_s);
-  L.leftCols<3>().setIdentity();
-  L.middleCols<3>(3) = -skew(jet.p);
-  L.rightCols(m.n_s) = jet.J;
-  return w.R * L;
-}
-
-/// The system M x_ddot + D x_dot + K x = 0.
-struct LinearSystem {
-  MatX<double> M, K, D;
-};
-
-/// Returns the columns of A with the given numbers.
-inline MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
-  MatX<double> columns(A.rows(), static_cast<Eigen::Index>(which.size()));
-  for (std::size_t i = 0; i < which.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
-  return columns;
-}
-
-/// Returns the largest step (s) for which a method keeps the solutions of a linear system bounded: infinite
-/// without stiffness and damping, 0 if the system is not finite.
-inline double stable_step_of(const Integrator& method, const LinearSystem& system) {
-  // Coordinates without inertia are fixed: remove them.
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < system.M.rows(); ++i)
-    if (system.M(i, i) > 0) kept.push_back(i);
-  const MatX<double> M = system.M(kept, kept), K = system.K(kept, kept), D = system.D(kept, kept);
-  const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
-  const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
-  const auto [values, vectors] = symmetric_eigenpairs(scaled);
-  std::vector<Eigen::Index> solid;
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    if (values[i] > 1e-10) solid.push_back(i);
-  MatX<double> T =
-      scale.asDiagonal() * vectors * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatX<double> all = columns_of(T, solid);
-  // Motions without stiffness and damping are always stable. Their double root 1 would only reduce the
-  // accuracy of the other roots.
-  const MatX<double> resistance = all.transpose() * (K + D) * all;
-  const Eigenpairs resisted = symmetric_eigenpairs(resistance);
-  std::vector<Eigen::Index> stiff_modes;
-  for (Eigen::Index i = 0; i < resistance.rows(); ++i)
-    if (resisted.values[i] > 1e-12 * resisted.values.cwiseAbs().maxCoeff()) stiff_modes.push_back(i);
-  const MatX<double> basis = all * columns_of(resisted.vectors, stiff_modes);
-  const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
-  const double stiff = k.norm(), damped = d.norm();
-  if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();
-  if (!std::isfinite(stiff + damped)) return 0;
+/// Returns the largest step (s) for which a method keeps the solutions of x_ddot + D x_dot + K x = 0 bounded:
+/// infinite without stiffness and damping, 0 if one of them is not finite. K: 1/s^2; D: 1/s.
+inline double stable_step_of(const Integrator& method, double K, double D) {
+  if (!(K > 0) && !(D > 0)) return std::numeric_limits<double>::infinity();
+  if (!std::isfinite(K + D)) return 0;
+  const MatX<double> k = MatX<double>::Constant(1, 1, K), d = MatX<double>::Constant(1, 1, D);
   // Bisection between a stable and an unstable step.
-  double low = 0.05 / std::max(std::sqrt(stiff), damped), high = low;
-  const double slack = 1 + 1e-9;
-  while (method.growth(k, d, high) <= slack && high < 1e12) high *= 2;
-  while (method.growth(k, d, low) > slack && low > 1e-30) low /= 2;
+  const double first = 0.05 / std::max(std::sqrt(K), D), slack = 1 + 1e-9;
+  constexpr double kUnlimited = 1e12;  // in units of the first step
+  double low = first, high = first;
+  while (method.growth(k, d, high) <= slack && high < kUnlimited * first) high *= 2;
+  if (!(high < kUnlimited * first)) return std::numeric_limits<double>::infinity();
+  while (method.growth(k, d, low) > slack && low > first / kUnlimited) low /= 2;
   for (int i = 0; i < 40 && high - low > 1e-6 * high; ++i) {
     const double middle = 0.5 * (low + high);
     (method.growth(k, d, middle) <= slack ? low : high) = middle;
@@ -94,30 +63,23 @@ inline double stable_step_of(const Integrator& method, const LinearSystem& syste
   return low;
 }
 
-/// Returns upper bounds of K (1/s^2) and D (1/s) of part i, which deforms locally, in mass-normalised
-/// coordinates. They are sums over its local elasticity, its global parameters, its drag and the springs at
-/// its ports. implicit: whether the method integrates local elasticity implicitly; then only drag and springs
-/// are included. The local elasticity is also omitted if the modes of the part oscillate freely and no spring
-/// is attached to the part, because methods then integrate the modes exactly.
-inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
-                                             const PartWorkspace<double>& w, bool implicit) {
+/// Returns the largest stable step (s) for one eigenvalue (1/s). Motions that grow by themselves, like the
+/// fall of an inverted pendulum, do not limit the step.
+inline double stable_step_of(const Integrator& method, std::complex<double> eigenvalue) {
+  const double damping = std::max(0.0, -eigenvalue.real());
+  if (eigenvalue.imag() == 0) return stable_step_of(method, 0, damping);
+  return stable_step_of(method, std::norm(eigenvalue), 2 * damping);
+}
+
+/// Returns upper bounds of K (1/s^2) and D (1/s) of the drag and the springs at a part whose elasticity the
+/// method integrates implicitly, in mass-normalised coordinates.
+struct Bound {
+  double K = 0, D = 0;
+};
+inline Bound bound_springs(const Model& model, std::size_t i) {
   const PartModel& m = model.parts()[i];
-  const Part& part = *m.part;
-  LocalDeformation::Bound bound;
-  const bool pulled = std::any_of(model.springs().begin(), model.springs().end(), [&](const SpringModel& s) {
-    return s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i);
-  });
-  if (!implicit && (!oscillates_freely(m) || pulled)) {
-    bound = m.local->stiffness_bound(*w.local);
-    bound.D += m.local->alpha();
-  }
-  bound.D += m.drag;
-  if (m.n_s > 0 && !implicit) {
-    const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
-    const double omega2 = spectral_radius(compliance * part.K_s());
-    bound.K += omega2;
-    bound.D += part.alpha() + part.beta() * omega2;
-  }
+  Bound bound;
+  bound.D = m.drag;
   for (const SpringModel& s : model.springs())
     for (const PortRef& ref : {s.a, s.b}) {
       if (ref.part != static_cast<int>(i)) continue;
@@ -129,85 +91,173 @@ inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
   return bound;
 }
 
-/// Returns the text that names the springs and parameters of a group as the cause of a limit.
-inline std::string limit_of_group(const Model& model, const std::vector<std::size_t>& group) {
-  const std::string name = "'" + model.parts()[group.front()].part->name() + "'";
-  if (group.size() == 1) return "the springs and parameters of part " + name;
-  return "the springs and parameters of part " + name + " and of " + std::to_string(group.size() - 1) +
-         (group.size() == 2 ? " part" : " parts") + " that springs connect to it";
+/// Returns the text that names the cause of a limit.
+inline std::string cause_of(const Model& model, const MotionPlace& place) {
+  const PartModel& m = model.parts()[static_cast<std::size_t>(place.part)];
+  const std::string name = "part '" + m.part->name() + "'";
+  if (place.is_local) return "the local elasticity of " + name;
+  if (place.is_of_parameters) return "the springs and parameters of " + name;
+  if (m.island >= 0) return "the oscillation of " + name + " on its joints";
+  return "the springs at " + name;
 }
 
-inline bool moves(const Model& model, int part) {
-  return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0;
-}
-
-/// Groups of moving parts that springs connect, and the springs at each part. A part without springs to other
-/// moving parts is a group of its own.
-struct SpringGroups {
-  std::vector<std::vector<std::size_t>> members;     ///< parts of each group; empty entries are unused
-  std::vector<std::vector<std::size_t>> springs_at;  ///< springs at each part
-
-  explicit SpringGroups(const Model& model)
-      : members(model.parts().size()), springs_at(model.parts().size()) {
-    const std::size_t n = model.parts().size();
-    std::vector<std::size_t> joined(n);
-    std::iota(joined.begin(), joined.end(), std::size_t{0});
-    auto root = [&](std::size_t i) {
-      while (joined[i] != i) i = joined[i] = joined[joined[i]];
-      return i;
-    };
-    const std::vector<SpringModel>& springs = model.springs();
-    for (const SpringModel& s : springs)
-      if (moves(model, s.a.part) && moves(model, s.b.part))
-        joined[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
-    for (std::size_t i = 0; i < n; ++i)
-      if (model.parts()[i].q0 >= 0) members[root(i)].push_back(i);
-    for (std::size_t k = 0; k < springs.size(); ++k)
-      for (const int end : {springs[k].a.part, springs[k].b.part})
-        if (moves(model, end)) springs_at[static_cast<std::size_t>(end)].push_back(k);
-  }
+/// A motion that limits the step.
+struct LimitingMotion {
+  double step = std::numeric_limits<double>::infinity();  ///< s
+  FastMotion motion;
 };
+
+/// Returns the motion with the smallest stable step.
+inline LimitingMotion limiting_motion(const Integrator& method, FastMotions& motions) {
+  std::vector<LimitingMotion> all;
+  for (FastMotion& motion : motions.motions()) {
+    const double step = stable_step_of(method, motion.value);
+    if (std::isfinite(step)) all.push_back({step, std::move(motion)});
+  }
+  std::sort(all.begin(), all.end(),
+            [](const LimitingMotion& a, const LimitingMotion& b) { return a.step < b.step; });
+  // A real eigenvalue alone does not determine the limit: it may belong to a damped oscillation, whose step
+  // map for semi-implicit Euler depends on both eigenvalues, or to a motion that grows by itself.
+  LimitingMotion smallest;
+  std::size_t examined = 0;
+  for (LimitingMotion& each : all) {
+    if (each.step > kNearLimit * smallest.step) break;
+    if (each.motion.value.imag() == 0 && examined < kMaxExamined) {
+      const FastMotions::Resistance resistance = motions.resistance(each.motion);
+      each.step = stable_step_of(method, resistance.K, resistance.D);
+      ++examined;
+    }
+    if (each.step < smallest.step) smallest = each;
+  }
+  return smallest;
+}
 
 /// The search for the smallest of all limits of the step.
 class StableStepSearch {
  public:
   explicit StableStepSearch(const Simulation& simulation)
-      : simulation_(simulation),
+      : method_(simulation.integrator()),
+        dynamics_(simulation.dynamics()),
         model_(simulation.model()),
-        state_(simulation.state()),
-        implicit_(simulation.integrator().local_is_implicit()),
-        groups_(model_),
-        first_(model_.parts().size(), -1) {
-    simulation.dynamics().accelerations(state_.time(), state_.q, state_.v, state_, work_);
-  }
+        state_(simulation.state()) {}
 
   StableStep run() {
-    limit_by(scalar_step(std::pow(fastest_sway(simulation_.dynamics(), state_, work_), 2), 0),
-             "the oscillation of parts on joints");
+    limit_by_motions();
     limit_by_stabilization();
     for (std::size_t i = 0; i < model_.parts().size(); ++i)
       if (model_.parts()[i].q0 >= 0) limit_by_part(i);
-    for (const std::vector<std::size_t>& group : groups_.members) limit_by_group(group);
-    if (sway_is_unknown(model_))
-      smallest_.uncounted =
-          "the oscillation of parts on joints is not included, because parts deform locally";
     return smallest_;
   }
 
  private:
   void limit_by(double step, const std::string& limit) {
-    if (step < smallest_.step) smallest_ = {step, limit, {}};
+    if (step < smallest_.step) smallest_ = {step, limit, smallest_.uncounted};
   }
-  /// Returns the stable step for x_ddot + damping x_dot + stiffness x = 0.
-  double scalar_step(double stiffness, double damping) const {
-    const auto matrix = [](double x) { return MatX<double>::Constant(1, 1, x); };
-    return stable_step_of(simulation_.integrator(), {matrix(1), matrix(stiffness), matrix(damping)});
+  /// Returns whether the method integrates the elasticity of a part implicitly.
+  bool is_implicit(const PartModel& m) const { return m.local != nullptr && method_.local_is_implicit(); }
+
+  /// Returns whether a spring acts on part i.
+  bool is_pulled(std::size_t i) const {
+    return std::any_of(model_.springs().begin(), model_.springs().end(), [&](const SpringModel& s) {
+      return s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i);
+    });
+  }
+
+  /// Returns which velocities take part in the motion whose eigenvalues limit the step. Local coordinates and
+  /// parameters that the method integrates implicitly do not, and neither do modes that it integrates
+  /// exactly.
+  std::vector<bool> moving_velocities() const {
+    std::vector<bool> moves(static_cast<std::size_t>(model_.n_v()), true);
+    for (std::size_t i = 0; i < model_.parts().size(); ++i) {
+      const PartModel& m = model_.parts()[i];
+      if (m.q0 < 0) continue;
+      const auto set = [&](int first, int count) { std::fill_n(moves.begin() + m.v0 + first, count, false); };
+      if (is_implicit(m))
+        set(6, m.n_s + m.n_d());
+      else if (oscillates_freely(m) && !is_pulled(i))
+        set(6 + m.n_s, m.n_d());
+    }
+    return moves;
+  }
+
+  /// Limits the step by the eigenvalues of the motion about the state.
+  void limit_by_motions() {
+    if (model_.islands().empty() && !has_stiffness(model_)) return;
+    const auto limits = [&](double K, double D) { return std::isfinite(stable_step_of(method_, K, D)); };
+    if (!limits(1, 0) && !limits(0, 1)) return;
+    // Baumgarte's terms have a limit of their own.
+    State state = state_;
+    std::replace(state.joints.begin(), state.joints.end(), JointMode::closing, JointMode::closed);
+    JointPolicy policy = dynamics_.joint_policy();
+    policy.projected = true;
+    Dynamics dynamics = dynamics_;
+    dynamics.set_joint_policy(policy);
+    FastMotions motions(dynamics, state, moving_velocities());
+    LimitingMotion limiting;
+    for (bool more = true; more;) {
+      more = motions.extend(kVectors);
+      limiting = limiting_motion(method_, motions);
+      more = more && !(std::isfinite(limiting.step) && limiting.motion.residual <= kResidual);
+    }
+    if (!std::isfinite(limiting.step)) return;
+    const double residual = limiting.motion.residual,
+                 margin = residual > kExact ? std::min(residual + kMargin, kMaxMargin) : residual;
+    const std::string cause = cause_of(model_, motions.place(limiting.motion));
+    limit_by(limiting.step / (1 + margin), cause);
+    report_far_start();
+    if (!(residual <= kReported)) {
+      std::ostringstream text;
+      text.precision(2);
+      text << "the frequency of " << cause << " is known to " << 100 * residual
+           << " % only, and may limit the step more";
+      smallest_.uncounted = text.str();
+      limit_by_element_bounds();
+    }
+  }
+
+  /// Limits the step by upper bounds of the stiffness and damping of local elasticity, element by element.
+  void limit_by_element_bounds() {
+    Workspace<double> work;
+    dynamics_.accelerations(state_.time(), state_.q, state_.v, state_, work);
+    for (std::size_t i = 0; i < model_.parts().size(); ++i) {
+      const PartModel& m = model_.parts()[i];
+      if (m.q0 < 0 || m.local == nullptr || is_implicit(m)) continue;
+      const LocalDeformation::Bound bound = m.local->stiffness_bound(*work.parts[i].local);
+      limit_by(stable_step_of(method_, bound.K, bound.D + m.local->alpha()),
+               "the local elasticity of part '" + m.part->name() + "'");
+    }
+  }
+
+  /// Reports a part that its accelerations deform or turn far in one step. The eigenvalues then change soon
+  /// after the start.
+  void report_far_start() {
+    Workspace<double> work;
+    dynamics_.accelerations(state_.time(), state_.q, state_.v, state_, work);
+    const double half_square = 0.5 * smallest_.step * smallest_.step;
+    double farthest = kFar;
+    for (const PartModel& m : model_.parts()) {
+      if (m.q0 < 0) continue;
+      const double turn = half_square * work.v_dot.segment<3>(m.v0 + 3).norm();
+      double strain = 0;
+      for (int k = 0; k < m.n_s; ++k)
+        if (m.part->parameters().moving(k).spec->quantity == Quantity::length)
+          strain = std::max(strain, half_square * std::abs(work.v_dot[m.v0 + 6 + k]) / m.part->size());
+      if (m.local != nullptr && m.local->nodal() != nullptr && m.n_d() > 0)
+        strain = std::max(strain, half_square *
+                                      work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()).cwiseAbs().maxCoeff() /
+                                      m.part->size());
+      if (!(std::max(turn, strain) > farthest)) continue;
+      farthest = std::max(turn, strain);
+      smallest_.uncounted = "the start is far from equilibrium: its loads " +
+                            std::string(strain > turn ? "deform" : "turn") + " part '" + m.part->name() +
+                            "' so fast that the stable step soon changes, and may become smaller";
+    }
   }
 
   /// Limits the step by Baumgarte's terms, which act on open joints, and on closed joints without projection.
   /// Gains that depend on the step length are stable for any step, so that they give no limit.
   void limit_by_stabilization() {
-    const JointPolicy& policy = simulation_.dynamics().joint_policy();
+    const JointPolicy& policy = dynamics_.joint_policy();
     const Stabilization& rule = model_.body().stabilization;
     const bool acts = !rule.follows_step(policy.step_consistent) &&
                       std::any_of(state_.joints.begin(), state_.joints.end(), [&](JointMode mode) {
@@ -215,7 +265,7 @@ class StableStepSearch {
                       });
     if (!acts) return;
     const Gains gains = rule.gains(state_.h, policy.step_consistent);
-    limit_by(scalar_step(gains.beta * gains.beta, 2 * gains.alpha),
+    limit_by(stable_step_of(method_, gains.beta * gains.beta, 2 * gains.alpha),
              "the gaps of joints, which Baumgarte's terms close");
   }
 
@@ -225,90 +275,28 @@ class StableStepSearch {
     const std::string name = "part '" + m.part->name() + "'";
     if (speed > 0) limit_by(kMaxRotation / speed, "the rotation of " + name);
     if (m.local == nullptr) return;
-    if (const Oscillators* modes = m.local->oscillators();
-        modes != nullptr && !implicit_ && model_.body().contact.active)
-      limit_by(kMaxPhase / std::sqrt(modes->omega2.maxCoeff()),
-               "the modes of " + name + ", which impacts may excite");
-    const LocalDeformation::Bound bound = bound_locally(model_, i, work_.parts[i], implicit_);
-    limit_by(scalar_step(bound.K, bound.D),
-             (implicit_ ? "the springs at " : "the local elasticity of ") + name);
+    if (const Oscillators* modes = m.local->oscillators(); modes != nullptr && !is_implicit(m)) {
+      const double of_phase = kMaxPhase / std::sqrt(modes->omega2.maxCoeff());
+      if (model_.body().contact.active)
+        limit_by(of_phase, "the modes of " + name + ", which impacts may excite");
+      if (oscillates_freely(m) && is_pulled(i)) {
+        limit_by(of_phase, "the modes of " + name + ", which springs may excite");
+        smallest_.uncounted = "the method integrates the modes of " + name +
+                              " exactly, so that longer steps may be stable in spite of the springs";
+      }
+    }
+    if (!is_implicit(m)) return;
+    const Bound bound = bound_springs(model_, i);
+    limit_by(stable_step_of(method_, bound.K, bound.D), "the springs at " + name);
+    if (m.island >= 0)
+      smallest_.uncounted = "the joints of parts that deform locally are not included, because " +
+                            std::string(method_.name()) + " integrates their elasticity implicitly";
   }
 
-  void limit_by_group(const std::vector<std::size_t>& group) {
-    int size = 0;
-    for (const std::size_t i : group) size += 6 + model_.parts()[i].n_s;
-    if (size == 0) return;
-    if (size <= kMaxGroupVelocities) {
-      limit_by(stable_step_of(simulation_.integrator(), system_of(group, 1)), limit_of_group(model_, group));
-      return;
-    }
-    // If the other end of a spring moves in the opposite direction, the spring acts on a part with up to
-    // twice its stiffness.
-    for (const std::size_t i : group)
-      limit_by(stable_step_of(simulation_.integrator(), system_of({i}, 2)), limit_of_group(model_, {i}));
-  }
-
-  /// Returns the system of some parts and their springs. open_weight: factor of the stiffness and damping of
-  /// springs that have one end on a moving part outside these parts.
-  LinearSystem system_of(const std::vector<std::size_t>& parts, double open_weight) {
-    int size = 0;
-    for (const std::size_t i : parts) {
-      first_[i] = size;
-      size += 6 + model_.parts()[i].n_s;
-    }
-    LinearSystem system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
-                        MatX<double>::Zero(size, size)};
-    std::vector<std::size_t> springs;
-    for (const std::size_t i : parts) {
-      add_part(i, system);
-      springs.insert(springs.end(), groups_.springs_at[i].begin(), groups_.springs_at[i].end());
-    }
-    std::sort(springs.begin(), springs.end());
-    springs.erase(std::unique(springs.begin(), springs.end()), springs.end());
-    for (const std::size_t k : springs) add_spring(model_.springs()[k], open_weight, system);
-    for (const std::size_t i : parts) first_[i] = -1;
-    return system;
-  }
-  void add_part(std::size_t i, LinearSystem& system) const {
-    const PartModel& m = model_.parts()[i];
-    const Part& part = *m.part;
-    const int row = first_[i], n_v = 6 + m.n_s;
-    const MatX<double>& M = mass_matrix(work_.parts[i]);
-    system.M.block(row, row, n_v, n_v) = M;
-    const VecMax<double> q_s = state_.q.segment(m.q0 + 7, m.n_s);
-    if (m.local == nullptr || !implicit_) {
-      system.K.block(row + 6, row + 6, m.n_s, m.n_s) += part.elastic_stiffness(q_s);
-      system.D.block(row + 6, row + 6, m.n_s, m.n_s) +=
-          part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.strain_stiffness(q_s);
-    }
-    system.D.block(row, row, n_v, n_v) += part.drag() * M;
-  }
-  /// Adds a spring that resists every change of x_b - x_a, the vector between its ends. In every direction
-  /// this spring is at least as stiff as the axial spring of the model.
-  void add_spring(const SpringModel& s, double open_weight, LinearSystem& system) const {
-    const auto is_outside = [&](int part) {
-      return moves(model_, part) && first_[static_cast<std::size_t>(part)] < 0;
-    };
-    const bool closed = !is_outside(s.a.part) && !is_outside(s.b.part);
-    MatX<double> L = MatX<double>::Zero(3, system.M.rows());
-    for (const auto& [ref, sign] : {std::pair{s.a, -1.0}, std::pair{s.b, 1.0}}) {
-      if (!moves(model_, ref.part) || is_outside(ref.part)) continue;
-      const auto i = static_cast<std::size_t>(ref.part);
-      L.middleCols(first_[i], 6 + model_.parts()[i].n_s) +=
-          sign * port_jacobian(model_.parts()[i], work_.parts[i], ref.port);
-    }
-    const double weight = closed ? 1.0 : open_weight;
-    system.K += weight * s.spring->stiffness * L.transpose() * L;
-    system.D += weight * s.spring->damping * L.transpose() * L;
-  }
-
-  const Simulation& simulation_;
+  const Integrator& method_;
+  const Dynamics& dynamics_;
   const Model& model_;
   const State& state_;
-  const bool implicit_;  // whether local elasticity is integrated implicitly
-  const SpringGroups groups_;
-  std::vector<int> first_;  // first row of each part in the system that is being assembled; -1: not included
-  Workspace<double> work_;
   StableStep smallest_{std::numeric_limits<double>::infinity(), {}, {}};
 };
 

@@ -8,9 +8,10 @@
 namespace pliant {
 
 struct StableStep {
-  double step;            ///< the result of largest_stable_step(), s
-  std::string limit;      ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
-  std::string uncounted;  ///< causes that are not included and may limit the step more; empty: none
+  double step;        ///< the result of largest_stable_step(), s
+  std::string limit;  ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
+  /// Why the step may be limited more, for example by causes that are not included; empty: for no reason.
+  std::string uncounted;
 };
 /// Returns the largest stable step at the current state, with its cause.
 StableStep stable_step(const Simulation& simulation);

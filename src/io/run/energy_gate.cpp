@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr const char* kNote = "warning: the largest error of the energy balance is ";
+constexpr const char* kNote = "the largest error of the energy balance is ";
 
 std::string percent(double share) {
   return rounded_text(100 * share) + " %";
@@ -34,20 +34,28 @@ void require_energy_balance(const Simulation& simulation, const EnergyMonitor& m
 }
 
 std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor) {
-  if (!(monitor.share() > kReportedEnergyShare)) return {};
   const Integrator& method = simulation.integrator();
-  std::string note = kNote + rounded_text(monitor.range().balance) + " J, which is " +
-                     percent(monitor.share()) + " of the energy that moved (" +
-                     rounded_text(monitor.moved()) + " J). ";
+  const double share = monitor.share();
+  const bool fixed_first_order = simulation.tolerance() == 0 && method.order() == 1;
+  if (share == 0 || (share <= kReportedEnergyShare && !fixed_first_order)) return {};
+  const std::string error = std::string(kNote) + rounded_text(monitor.range().balance) + " J, which is " +
+                            percent(share) + " of the energy that moved (" + rounded_text(monitor.moved()) +
+                            " J). ",
+                    order = std::string("The method ") + method.name() + " is of order " +
+                            std::to_string(method.order()) + ".";
+  if (share <= kReportedEnergyShare) return error + order;
+  const std::string warning = "warning: " + error;
   if (simulation.tolerance() > 0)
-    return note + "Choose a smaller tolerance than " + rounded_text(simulation.tolerance()) + ".";
-  return note + "The method " + method.name() + " is of order " + std::to_string(method.order()) +
-         ". Choose a smaller step than " + rounded_text(simulation.state().h) +
+    return warning + "Choose a smaller tolerance than " + rounded_text(simulation.tolerance()) + ".";
+  const double h = simulation.state().h;
+  return warning + order + " Choose " +
+         (fixed_first_order ? "a step of about " + rounded_text(h * kReportedEnergyShare / share, 2)
+                            : "a smaller step than " + rounded_text(h)) +
          " s, or \"integrator\": \"auto\" with a tolerance.";
 }
 
 bool is_energy_note(const std::string& note) {
-  return note.rfind(kNote, 0) == 0;
+  return note.find(kNote) != std::string::npos;
 }
 
 }  // namespace pliant

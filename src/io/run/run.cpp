@@ -34,7 +34,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 // Returns the simulation of a scene. Throws std::invalid_argument for inconsistent settings of the scene.
-std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
+std::unique_ptr<Simulation> prepare(Scene& scene, const RunOptions& options) {
   if (scene.appearance.size() != scene.body.parts().size())
     throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) +
                                 " parts, but " + std::to_string(scene.appearance.size()) + " appearances");
@@ -44,23 +44,21 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
                                 " obstacle appearances");
   for (const Track& track : scene.tracks)
     if (track.point.part == nullptr) throw std::invalid_argument("track '" + track.name + "' has no part");
-  return std::make_unique<Simulation>(scene.body, scene.integrator, threads, scene.tolerance);
+  return std::make_unique<Simulation>(scene.body, scene.integrator, options.threads, scene.tolerance,
+                                      options.stop);
 }
 
 }  // namespace
 
 int automatic_threads(Scene& scene) {
-  // Lower bounds of the cost of an evaluation in microseconds, measured with bench/step_bench: per part, per
-  // mass point and parameter, and per strain point. Dispatching work to the thread pool and waiting for it
-  // takes about 10 microseconds. A thread is therefore used for every worth_a_thread microseconds.
-  constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
+  // Dispatching work to the thread pool and waiting for it takes about 10 microseconds. A thread is therefore
+  // used for every worth_a_thread microseconds of an evaluation.
+  constexpr double worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
     if (part->fixed()) continue;
     part->prepare();
-    cost += part_alone + point_and_parameter * part->mass_points().n_points * part->n_s();
-    if (part->continuum() != nullptr) cost += strain_point * part->continuum()->points().n_points;
-    if (part->local() != nullptr) cost += part->local()->cost();
+    cost += evaluation_cost(*part);
   }
   const int available = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, available);
@@ -78,7 +76,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
       schedule_(schedule_of(scene)),
       started_(Clock::now()) {
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
-  simulation_ = prepare(scene, options_.threads);
+  simulation_ = prepare(scene, options_);
   energies_.emplace(simulation_->model());
   const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
@@ -133,6 +131,8 @@ void Run::note_setup(const StableStep& stable) {
          " s is larger than the largest stable step, about " + rounded_text(stable.step) + " s, limited by " +
          stable.limit + "; choose a smaller step");
   }
+  if (scene_->tolerance == 0 && !stable.uncounted.empty())
+    note("the largest stable step is not certain: " + stable.uncounted);
   if (!simulation_->choice().integrator.empty())
     note("integrator " + simulation_->choice().integrator + ": " + simulation_->choice().why);
   const AssemblyReport& assembly = simulation_->assembly();

@@ -171,22 +171,26 @@ Record part_record() {
 }
 
 Record time_record() {
-  return {"time",
-          "Duration of the run and method of time integration.",
-          {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
-           optional("step", number(above(0), "s"), "Fixed time step.", "0.001"),
-           optional("integrator", choice(integrator_choices()), "Method of time integration.",
-                    "\"semi_implicit_euler\""),
-           optional("tolerance", number(between(kMinTolerance, kMaxTolerance), "1"),
-                    "Bound on the error of a step, which then controls the step length. Its unit is the size "
-                    "of the part for lengths and the radian for angles; for rates it is this unit per "
-                    "second, or per a shorter time scale of the part. When absent, all "
-                    "steps have the length \"step\"."),
-           optional("solver",
-                    choice({{"auto", "chosen for each island of parts by a fixed cost model"},
-                            {"blocks", "blocks of C_q M^-1 C_q^T"},
-                            {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
-                    "Method for the constraint forces of joints.", "\"auto\"")}};
+  return {
+      "time",
+      "Duration of the run and method of time integration.",
+      {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
+       optional("step", number(above(0), "s"),
+                "Fixed time step, for a scene without \"tolerance\" whose integrator is not \"auto\".",
+                "0.001"),
+       optional("integrator", choice(integrator_choices()),
+                "Method of time integration. When absent, it is \"semi_implicit_euler\" in a scene with "
+                "\"step\" and without \"tolerance\", otherwise \"auto\"."),
+       optional("tolerance", number(between(kMinTolerance, kMaxTolerance), "1"),
+                "Bound on the error of a step, which then controls the step length. Its unit is the size "
+                "of the part for lengths and the radian for angles; for rates it is this unit per "
+                "second, or per a shorter time scale of the part. When absent, it "
+                "is 1e-6 with the integrator \"auto\"; with the others all steps have the length \"step\"."),
+       optional("solver",
+                choice({{"auto", "chosen for each island of parts by a fixed cost model"},
+                        {"blocks", "blocks of C_q M^-1 C_q^T"},
+                        {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
+                "Method for the constraint forces of joints.", "\"auto\"")}};
 }
 
 Record spring_record() {

@@ -21,7 +21,8 @@ inline constexpr double kLargestEnergyShare = 0.5;
 /// since the state `before`. before: the last recorded state. monitor: has the ledger of the present state.
 void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before);
 
-/// Returns a warning about the largest error of the balance of a run; empty up to kReportedEnergyShare.
+/// Returns a note about the largest error of the balance of a run, a warning above kReportedEnergyShare. The
+/// text is empty if nothing moved and, below kReportedEnergyShare, for methods of higher order.
 std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor);
 /// Returns whether a note is one of energy_note().
 bool is_energy_note(const std::string& note);

@@ -36,7 +36,9 @@ struct RunOptions {
   double remedy_seconds = 2;         ///< wall time of the trials after a failure, see find_remedy(), s
   /// Wall time between two checkpoints, s; with 0, a checkpoint is written after every step.
   double checkpoint_every = kStandardCheckpointInterval;
-  std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
+  /// Called before every step; true ends the run so that it can be resumed. Also called while the method of
+  /// integration is chosen; true then ends the constructor of Run.
+  std::function<bool()> stop;
 };
 
 /// A run in its folder. It uses end, step, tolerance, frame rate, integrator and picture size of the scene,
@@ -47,7 +49,8 @@ class Run {
   /// run locks and reads the folder, and compares all recorded numbers with their checksums. If no run has
   /// begun in the folder of a resumed run, a new run begins. Throws std::invalid_argument (a bad scene),
   /// OutputRefused, RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame
-  /// rate, or a damaged recording), std::system_error. The scene must outlive the run.
+  /// rate, or a damaged recording), std::system_error, ChoiceStopped (`stop` returned true; no file has been
+  /// written). The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;

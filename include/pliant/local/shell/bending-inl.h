@@ -539,13 +539,13 @@ void MidEdgeBending<Hinges>::add_strain(const Triangles& triangles, int lane, co
 }
 
 template <class Hinges>
-typename MidEdgeBending<Hinges>::Stiffness MidEdgeBending<Hinges>::triangle_stiffness(
-    int t, const Coordinates& x, const double* angles, const double* phi) const {
+typename MidEdgeBending<Hinges>::Stiffness MidEdgeBending<Hinges>::triangle_matrix(
+    int t, const Coordinates& x, const double* angles, const double* phi, Terms terms) const {
   const int batch = t / Pack::kLanes, lane = t % Pack::kLanes;
   const Triangles& triangles = triangles_[static_cast<std::size_t>(batch)];
   const TriangleCorners corners = triangle_batches_.corners(x, batch);
   const PerEdge alpha = rotations(triangles, angles, phi, hinges_.strain(batch, corners)),
-                m = moments(triangles, alpha);
+                m = terms == Terms::stiffness ? moments(triangles, alpha) : PerEdge{0.0, 0.0, 0.0};
   Stiffness stiffness;
   Mat3<double> Q;
   for (int k = 0; k < 3; ++k) {
@@ -563,22 +563,29 @@ typename MidEdgeBending<Hinges>::Stiffness MidEdgeBending<Hinges>::triangle_stif
 
 template <class Hinges>
 template <class Visit>
-void MidEdgeBending<Hinges>::each_element(const Coordinates& x, Visit&& visit) const {
+void MidEdgeBending<Hinges>::each_element(const Coordinates& x, Terms terms, Visit&& visit) const {
   Buffer buffer;
   const Scratch at = scratch(buffer);
   const double* phi = compute_rotations(x, at, nullptr);
-  for (int t = 0; t < triangle_nodes_.cols(); ++t) visit(triangle_stiffness(t, x, at.angles, phi).element);
+  for (int t = 0; t < triangle_nodes_.cols(); ++t)
+    visit(triangle_matrix(t, x, at.angles, phi, terms).element);
 }
 
 template <class Hinges>
 void MidEdgeBending<Hinges>::add_stiffness(const Coordinates& x,
                                            std::vector<Eigen::Triplet<double>>& K) const {
-  add_triplets([&](auto&& visit) { each_element(x, visit); }, K);
+  add_triplets([&](auto&& visit) { each_element(x, Terms::stiffness, visit); }, K);
+}
+
+template <class Hinges>
+void MidEdgeBending<Hinges>::add_viscosity(const Coordinates& x,
+                                           std::vector<Eigen::Triplet<double>>& V) const {
+  add_triplets([&](auto&& visit) { each_element(x, Terms::viscosity, visit); }, V);
 }
 
 template <class Hinges>
 double MidEdgeBending<Hinges>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
-  return largest_element_frequency([&](auto&& visit) { each_element(x, visit); }, M);
+  return largest_element_frequency([&](auto&& visit) { each_element(x, Terms::stiffness, visit); }, M);
 }
 
 }  // namespace pliant

@@ -46,6 +46,7 @@ class MidEdgeBending final : public NodalEnergy {
   void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
   void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  void add_viscosity(const Coordinates& x, std::vector<Eigen::Triplet<double>>& V) const override;
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
@@ -117,17 +118,20 @@ class MidEdgeBending final : public NodalEnergy {
 
   /// Stiffness of one triangle while it is assembled.
   struct Stiffness;
-  /// Returns K of triangle t at x. angles, phi: dtheta of all hinges and phi of all edges at x.
-  Stiffness triangle_stiffness(int t, const Coordinates& x, const double* angles, const double* phi) const;
+  /// Terms of a matrix: K, or V of add_viscosity(), which is K without the geometric stiffness.
+  enum class Terms { stiffness, viscosity };
+  /// Returns the matrix of triangle t at x. angles, phi: dtheta of all hinges and phi of all edges at x.
+  Stiffness triangle_matrix(int t, const Coordinates& x, const double* angles, const double* phi,
+                            Terms terms) const;
   /// Adds the terms of edge k of triangle t to its stiffness. moment: dE/dalpha at this edge, N m. A boundary
   /// edge has no hinge.
   void add_edge(int t, int k, double moment, const Coordinates& x, Stiffness& to) const;
   /// Adds the terms of the strain q of the triangle in `lane`. edges, tension: values of its batch.
   static void add_strain(const Triangles& triangles, int lane, const Edges<Pack>& edges,
                          const PerEdge& tension, Stiffness& to);
-  /// Calls visit(ElementMatrix) with the stiffness of every triangle at x.
+  /// Calls visit(ElementMatrix) with the matrix of every triangle at x.
   template <class Visit>
-  void each_element(const Coordinates& x, Visit&& visit) const;
+  void each_element(const Coordinates& x, Terms terms, Visit&& visit) const;
 
   Eigen::Index n_nodes_;
   Eigen::Matrix3Xi triangle_nodes_;

@@ -75,6 +75,22 @@ void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x
 }
 
 template <class Law>
+ElementMatrix<9> Membrane<Law>::element_of(int b, int lane, const Edges<Pack>& e,
+                                           const std::array<std::array<Pack, 3>, 3>& slope) const {
+  Mat3<double> S;
+  Eigen::Matrix<double, 3, 9> G = Eigen::Matrix<double, 3, 9>::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    for (std::size_t l = 0; l < 3; ++l) S(row, static_cast<Eigen::Index>(l)) = slope[k][l][lane];
+    for (int i = 0; i < 3; ++i) {
+      G(row, 3 * ((row + 2) % 3) + i) = e[k][i][lane];
+      G(row, 3 * ((row + 1) % 3) + i) = -e[k][i][lane];
+    }
+  }
+  return {batches_.coordinates(b, lane), G.transpose() * S.selfadjointView<Eigen::Upper>() * G};
+}
+
+template <class Law>
 template <class Visit>
 void Membrane<Law>::each_element(const Coordinates& x, Visit&& visit) const {
   using D = Dual<3, Pack>;
@@ -84,18 +100,7 @@ void Membrane<Law>::each_element(const Coordinates& x, Visit&& visit) const {
     const std::array<D, 3> tau = batch(b).law.tension(
         std::array<D, 3>{D::variable(q[0], 0), D::variable(q[1], 1), D::variable(q[2], 2)});
     for (int lane = 0; lane < batches_.lanes(b); ++lane) {
-      Mat3<double> slope;
-      Eigen::Matrix<double, 3, 9> G = Eigen::Matrix<double, 3, 9>::Zero();  // dq = G dx
-      ElementMatrix<9> element{batches_.coordinates(b, lane), {}};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto row = static_cast<Eigen::Index>(k);
-        for (std::size_t l = 0; l < 3; ++l) slope(row, static_cast<Eigen::Index>(l)) = tau[k].d[l][lane];
-        for (int i = 0; i < 3; ++i) {
-          G(row, 3 * ((row + 2) % 3) + i) = e[k][i][lane];
-          G(row, 3 * ((row + 1) % 3) + i) = -e[k][i][lane];
-        }
-      }
-      element.K = G.transpose() * slope.selfadjointView<Eigen::Upper>() * G;
+      ElementMatrix<9> element = element_of(b, lane, e, {tau[0].d, tau[1].d, tau[2].d});
       for (int k = 0; k < 3; ++k) {
         const double tension = tau[static_cast<std::size_t>(k)].v[lane];
         const int to = 3 * ((k + 2) % 3), from = 3 * ((k + 1) % 3);
@@ -114,6 +119,24 @@ void Membrane<Law>::each_element(const Coordinates& x, Visit&& visit) const {
 template <class Law>
 void Membrane<Law>::add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(x, visit); }, K);
+}
+
+template <class Law>
+void Membrane<Law>::add_viscosity(const Coordinates& x, std::vector<Eigen::Triplet<double>>& V) const {
+  add_triplets(
+      [&](auto&& visit) {
+        for (int b = 0; b < batches_.n_batches(); ++b) {
+          const Edges<Pack> e = edges_of(batches_.corners(x, b));
+          std::array<std::array<Pack, 3>, 3> slope;  // symmetric: column k in place of row k
+          for (std::size_t k = 0; k < 3; ++k) {
+            std::array<Pack, 3> unit{0.0, 0.0, 0.0};
+            unit[k] = 1.0;
+            slope[k] = batch(b).law.linear_tension(unit);
+          }
+          for (int lane = 0; lane < batches_.lanes(b); ++lane) visit(element_of(b, lane, e, slope));
+        }
+      },
+      V);
 }
 
 template <class Law>

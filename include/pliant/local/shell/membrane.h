@@ -10,6 +10,7 @@
 
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/shell/membrane_laws.h>
+#include <pliant/local/solid/element_matrix.h>
 
 namespace pliant {
 
@@ -30,6 +31,7 @@ class Membrane final : public NodalEnergy {
   void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
   void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  void add_viscosity(const Coordinates& x, std::vector<Eigen::Triplet<double>>& V) const override;
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
@@ -44,6 +46,10 @@ class Membrane final : public NodalEnergy {
     }
   };
   const Batch& batch(int b) const { return triangles_[static_cast<std::size_t>(b)]; }
+  /// Returns G^T slope G of one triangle with the current edges e, where dq = G dx. slope: dtau/dq of the
+  /// triangles of batch b.
+  ElementMatrix<9> element_of(int b, int lane, const Edges<Pack>& e,
+                              const std::array<std::array<Pack, 3>, 3>& slope) const;
   /// Calls visit(ElementMatrix) with the stiffness of every triangle at x.
   template <class Visit>
   void each_element(const Coordinates& x, Visit&& visit) const;

@@ -26,6 +26,7 @@ class Pressure : public NodalEnergy {
   /// Adds nothing: pressure has no damping.
   void add_viscous_force(const Coordinates&, const Coordinates&, VecX<double>&, Buffer&,
                          ThreadPool*) const final {}
+  void add_viscosity(const Coordinates&, std::vector<Eigen::Triplet<double>>&) const final {}
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const final;
 
   /// Returns w = sqrt(E'') dV/dx; zero at constant pressure.

@@ -136,21 +136,23 @@ typename SolidEnergy<Element, Law>::GradientMatrix SolidEnergy<Element, Law>::gr
 }
 
 template <class Element, class Law>
-typename SolidEnergy<Element, Law>::StressDerivative SolidEnergy<Element, Law>::stress_derivative(
-    const Mat3<double>& G) const {
+template <class Stress>
+typename SolidEnergy<Element, Law>::StressDerivative SolidEnergy<Element, Law>::stress_matrix(
+    Stress&& stress) {
   StressDerivative C;
   for (int column = 0; column < 9; ++column) {
     Mat3<double> unit = Mat3<double>::Zero();
     unit(column / 3, column % 3) = 1;
-    const Mat3<double> dP = law_.stress_along(G, unit);
+    const Mat3<double> dP = stress(unit);
     for (int row = 0; row < 9; ++row) C(row, column) = dP(row / 3, row % 3);
   }
   return C;
 }
 
 template <class Element, class Law>
+template <class Derivative>
 Eigen::Matrix<double, 3 * SolidEnergy<Element, Law>::N, 3 * SolidEnergy<Element, Law>::N>
-SolidEnergy<Element, Law>::element_stiffness(const Coordinates& x, int element) const {
+SolidEnergy<Element, Law>::element_matrix(const Coordinates& x, int element, Derivative&& derivative) const {
   Eigen::Matrix<double, 3 * N, 3 * N> K = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
   Vec3<double> corner[N];
   for (int a = 0; a < N; ++a)
@@ -163,25 +165,54 @@ SolidEnergy<Element, Law>::element_stiffness(const Coordinates& x, int element) 
     const Mat3<double> inverse = detail::tensor_lane(point.inverse, lane);
     const Mat3<double> G = product(Element::gradient(at, corner), inverse);
     const GradientMatrix B = gradient_matrix(at, inverse);
-    const StressDerivative C = stress_derivative(G);
+    const StressDerivative C = derivative(G);
     K.noalias() += B.transpose() * (point.weight[lane] * C) * B;
   }
   return K;
 }
 
 template <class Element, class Law>
-void SolidEnergy<Element, Law>::add_stiffness(const Coordinates& x,
-                                              std::vector<Eigen::Triplet<double>>& K) const {
+Eigen::Matrix<double, 3 * SolidEnergy<Element, Law>::N, 3 * SolidEnergy<Element, Law>::N>
+SolidEnergy<Element, Law>::element_stiffness(const Coordinates& x, int element) const {
+  return element_matrix(x, element, [&](const Mat3<double>& G) {
+    return stress_matrix([&](const Mat3<double>& dG) { return law_.stress_along(G, dG); });
+  });
+}
+
+template <class Element, class Law>
+template <class Matrix>
+void SolidEnergy<Element, Law>::add_entries(std::vector<Eigen::Triplet<double>>& entries,
+                                            Matrix&& matrix) const {
   const int n = corners_.n_nodes();
   for (int e = 0; e < corners_.n_elements(); ++e) {
-    const auto K_e = element_stiffness(x, e);
+    const Eigen::Matrix<double, 3 * N, 3 * N> K_e = matrix(e);
     for (int a = 0; a < N; ++a)
       for (int b = 0; b < N; ++b)
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
-            K.emplace_back(i * n + corners_.node(e, a), j * n + corners_.node(e, b),
-                           K_e(3 * a + i, 3 * b + j));
+            entries.emplace_back(i * n + corners_.node(e, a), j * n + corners_.node(e, b),
+                                 K_e(3 * a + i, 3 * b + j));
   }
+}
+
+template <class Element, class Law>
+void SolidEnergy<Element, Law>::add_stiffness(const Coordinates& x,
+                                              std::vector<Eigen::Triplet<double>>& K) const {
+  add_entries(K, [&](int e) { return element_stiffness(x, e); });
+}
+
+template <class Element, class Law>
+void SolidEnergy<Element, Law>::add_viscosity(const Coordinates& x,
+                                              std::vector<Eigen::Triplet<double>>& V) const {
+  if constexpr (Law::of == Of::displacement)
+    add_stiffness(x, V);
+  else
+    add_entries(V, [&](int e) {
+      return element_matrix(x, e, [&](const Mat3<double>& F) {
+        return stress_matrix(
+            [&](const Mat3<double>& F_dot) { return viscous_stress(law_.lambda, law_.mu, F, F_dot); });
+      });
+    });
 }
 
 template <class Element, class Law>

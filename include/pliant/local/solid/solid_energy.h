@@ -42,6 +42,7 @@ class SolidEnergy final : public NodalEnergy {
   void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
   void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  void add_viscosity(const Coordinates& x, std::vector<Eigen::Triplet<double>>& V) const override;
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
   const Law& law() const { return law_; }
@@ -69,8 +70,18 @@ class SolidEnergy final : public NodalEnergy {
   /// Returns dG/dx_a at a quadrature point of an element. Row 3 r + c is G_rc, column 3 a + i is direction i
   /// of corner a.
   static GradientMatrix gradient_matrix(const TetrahedronPoint& at, const Mat3<double>& inverse);
-  /// Returns dP/dG of the law at G, components in the order of gradient_matrix.
-  StressDerivative stress_derivative(const Mat3<double>& G) const;
+  /// Returns the 9 x 9 matrix of a linear map of gradients to stresses, components in the order of
+  /// gradient_matrix.
+  template <class Stress>
+  static StressDerivative stress_matrix(Stress&& stress);
+  /// Returns sum over the quadrature points of B^T (weight C) B of one element at x, with B of
+  /// gradient_matrix and C = derivative(G).
+  template <class Derivative>
+  Eigen::Matrix<double, 3 * N, 3 * N> element_matrix(const Coordinates& x, int element,
+                                                     Derivative&& derivative) const;
+  /// Appends the entries of matrix(element) of all elements.
+  template <class Matrix>
+  void add_entries(std::vector<Eigen::Triplet<double>>& entries, Matrix&& matrix) const;
   const Point* points(int pack) const { return points_.data() + static_cast<std::ptrdiff_t>(pack) * kPoints; }
 
   Law law_;

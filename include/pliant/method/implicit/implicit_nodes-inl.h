@@ -31,15 +31,18 @@ inline constexpr double kPerturbation = 1e-7;
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Calls add(row, column, value) for each contribution to the lower triangle of K by the energies of the kind
-/// `of`. x: positions or displacements of the nodes, depending on `of`, m. entries: scratch storage; its
-/// contents are ignored.
+/// A matrix of an energy: NodalEnergy::add_stiffness or NodalEnergy::add_viscosity.
+using Matrix = void (NodalEnergy::*)(const Coordinates&, Entries&) const;
+
+/// Calls add(row, column, value) for each contribution to the lower triangle of a matrix by the energies of
+/// the kind `of`. x: positions or displacements of the nodes, depending on `of`, m. entries: scratch storage;
+/// its contents are ignored.
 template <class Add>
-void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
-                    Add&& add) {
+void for_each_entry(const NodalDeformation& local, Of of, Matrix matrix, const VecX<double>& x,
+                    Entries& entries, Add&& add) {
   entries.clear();
   for (const auto& energy : local.energies())
-    if (energy->of() == of) energy->add_stiffness(x, entries);
+    if (energy->of() == of) (*energy.*matrix)(x, entries);
   for (const Eigen::Triplet<double>& entry : entries)
     if (entry.row() >= entry.col()) add(entry.row(), entry.col(), entry.value());
 }
@@ -52,6 +55,29 @@ inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<do
   for (const auto& energy : local.energies())
     if (energy->of() == Of::position) energy->add_derivative(x, dx, f, buffer, nullptr);
   return -f;
+}
+
+/// Returns V_p dx at positions x (m), with V_p of implicit_nodes.h.
+inline VecX<double> viscosity_along(const NodalDeformation& local, const VecX<double>& x,
+                                    const VecX<double>& dx) {
+  VecX<double> f = VecX<double>::Zero(x.size());
+  NodalEnergy::Buffer buffer;
+  for (const auto& energy : local.energies())
+    if (energy->of() == Of::position) energy->add_viscous_force(x, dx, f, buffer, nullptr);
+  return -f;
+}
+
+/// Returns delta = G - G0 at the nodes in the columns of the rotation: -[d]x. The other columns are zero.
+inline MatX<double> turned_displacements(const NodalWorkspace& w, Eigen::Index n_d) {
+  const Eigen::Index n = w.s.rows();
+  MatX<double> delta = MatX<double>::Zero(n_d, 3);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    // Column i of -[d]x is e_i x d, with component -d_k along j and d_j along k.
+    delta.col(i).segment(j * n, n) = -w.d.segment(k * n, n);
+    delta.col(i).segment(k * n, n) = w.d.segment(j * n, n);
+  }
+  return delta;
 }
 
 /// Returns the vectors w of the dense terms that add_stiffness omits, one for each internal pressure.
@@ -89,9 +115,11 @@ PLIANT_INLINE void ImplicitNodes::make_pattern() {
     perturbed[i] += implicit_nodes::kPerturbation * part_->part->size() * std::sin(static_cast<double>(i));
   implicit_nodes::Entries lower;
   for (int i = 0; i < n_d; ++i) lower.emplace_back(i, i, 0.0);
-  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::displacement, rest_.d, entries_,
+  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::displacement, &NodalEnergy::add_stiffness,
+                                 rest_.d, entries_,
                                  [&](int i, int j, double value) { lower.emplace_back(i, j, value); });
-  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, perturbed, entries_,
+  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, &NodalEnergy::add_stiffness,
+                                 perturbed, entries_,
                                  [&](int i, int j, double) { lower.emplace_back(i, j, 0.0); });
   K_.resize(n_d, n_d);
   K_.setFromTriplets(lower.begin(), lower.end());
@@ -146,16 +174,23 @@ PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double 
 
 PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double t) {
   if (K_.size() == 0) make_pattern();
+  const double beta = local().beta();
   S_ = K_;
-  if (stiffness_changes_)
-    implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, x, entries_,
-                                   [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
+  S_.coeffs() *= c * (beta + c);
+  if (stiffness_changes_) {
+    const auto add = [&](implicit_nodes::Matrix matrix, double factor) {
+      implicit_nodes::for_each_entry(
+          local(), implicit_nodes::Of::position, matrix, x, entries_,
+          [&](int i, int j, double value) { S_.coeffRef(i, j) += factor * value; });
+    };
+    add(&NodalEnergy::add_stiffness, c * c);
+    if (beta > 0) add(&NodalEnergy::add_viscosity, c * beta);
+  }
   if (!S_.isCompressed()) S_.makeCompressed();
   if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
     factor_->analyse(S_);
     analysed_ = S_.nonZeros();
   }
-  S_.coeffs() *= c * (local().beta() + c);
   const int factorisations = factor_definite(1 + c * local().alpha(), t);
   const std::vector<NodeWeights>& points = part_->joint_points;
   if (points.empty()) return factorisations;
@@ -182,23 +217,16 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
     B_.col(3 + i).segment(j * n, n) = -m.cwiseProduct(w.s.col(k));
     B_.col(3 + i).segment(k * n, n) = m.cwiseProduct(w.s.col(j));
   }
-  K_elastic_.setZero(n_s, n_s);
-  for (Eigen::Index k = 0; k < n_s; ++k) {
+  for (Eigen::Index k = 0; k < n_s; ++k)
     for (int r = 0; r < 3; ++r)
       B_.col(6 + k).segment(r * n, n) = m.cwiseProduct(w.J.col(k).segment(r * n, n));
-    if (!stiffness_changes_) continue;
-    VecX<double> J = VecX<double>::Zero(n_d);
-    J.head(3 * n) = w.J.col(k);
-    const VecX<double> P = implicit_nodes::stiffness_along(local(), w.x, J);
-    K_elastic_.col(k) = w.J.transpose() * P.head(3 * n);
-    B_.col(n_r() + 6 + k) = c * c * P;
-  }
+  if (stiffness_changes_) add_frame_columns(w, c);
   for (Eigen::Index k = 0; k < n_dense; ++k)
     B_.rightCols(n_dense).col(k) = c * dense[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
-  if (stiffness_changes_ && n_s > 0)
-    factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns before these are zero
+  if (stiffness_changes_)
+    factor_->solve(T_.middleCols(n_r() + 3, 3 + n_s));  // the columns before these are zero
   if (n_dense > 0) factor_->solve(T_.rightCols(n_dense));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_dense).array() -= 1;
@@ -207,16 +235,60 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   N_T_ = at_joints(T_);
 }
 
+/// Sets the columns of x_r in the border, M delta and Q, and the blocks J^T Q and `turned_` of the core.
+PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, double c) {
+  const Eigen::Index n = local().n_nodes(), n_d = local().n_d(), n_s = part_->n_s;
+  const MatX<double> delta = implicit_nodes::turned_displacements(w, n_d);
+  auto turned_columns = B_.middleCols(n_r() + 3, 3);
+  turned_columns = local().inertia().asDiagonal() * delta;
+  x_ = w.x;
+  J_ = w.J;
+  J_Q_.setZero(n_s, n_s);
+  for (Eigen::Index k = 0; k < n_s; ++k) {
+    VecX<double> J = VecX<double>::Zero(n_d);
+    J.head(3 * n) = w.J.col(k);
+    VecX<double> Q = c * c * implicit_nodes::stiffness_along(local(), w.x, J);
+    if (local().beta() > 0) Q += c * local().beta() * implicit_nodes::viscosity_along(local(), w.x, J);
+    J_Q_.col(k) = w.J.transpose() * Q.head(3 * n);
+    B_.col(n_r() + 6 + k) = Q;
+  }
+  // H0 + delta^T W is the matrix H of part/local/README.md, and K = H - P^T has been factored there.
+  const MatX<double> delta_W = delta.transpose() * B_.leftCols(n_r());
+  MatX<double> H = w.H0;
+  H.middleRows<3>(3) += delta_W;
+  P_.setZero(n_r(), n_r());
+  if (n_s > 0) {
+    const MatX<double> K_inverse = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));
+    P_.rightCols(n_s) = (H - K_inverse.inverse()).transpose().rightCols(n_s);
+    for (Eigen::Index k = 0; k < n_s; ++k)
+      if (w.without_inertia.test(static_cast<std::size_t>(6 + k))) {
+        P_.row(6 + k).setZero();
+        P_.col(6 + k).setZero();
+      }
+  }
+  M_r_ = H;
+  M_r_.middleCols<3>(3) += delta_W.transpose();
+  M_r_.block<3, 3>(3, 3) += delta.transpose() * turned_columns;
+  M_r_ -= P_ + P_.transpose();
+}
+
 PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
   MatX<double> core = core_fixed_;
   if (frame_in_border()) {
     const Part& part = *part_->part;
     const Eigen::Index n_s = part_->n_s;
-    K_s_ = part.K_s() + K_elastic_;
+    K_s_ = part.K_s();
     D_s_ = part.alpha() * w.H0.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
     auto S_r = core.block(n_r(), n_r(), n_r(), n_r());
-    S_r += w.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
+    if (stiffness_changes_) {
+      S_r += M_r_;
+      S_r.bottomRightCorner(n_s, n_s) += J_Q_;
+      core.block(0, n_r(), n_r(), n_r()) += P_;
+      core.block(n_r(), 0, n_r(), n_r()) += P_.transpose();
+    } else {
+      S_r += w.H0;
+    }
     for (int k = 0; k < n_s; ++k)
       if (w.without_inertia.test(
               static_cast<std::size_t>(6 + k))) {  // the column of W for this parameter is zero
@@ -236,6 +308,17 @@ PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& nodal) c
   return values;
 }
 
+/// Returns E of implicit_nodes.h for the rates r_q of the part's parameters and local coordinates.
+PLIANT_INLINE VecX<double> ImplicitNodes::damping_excess(const VecX<double>& r_q_s,
+                                                         const VecX<double>& r_q) const {
+  const double beta = local().beta(), s = 1 / (beta + c_);
+  VecX<double> rate = r_q;
+  if (J_.cols() > 0) rate.head(J_.rows()) += J_ * r_q_s;
+  return c_ * beta * s *
+         (implicit_nodes::viscosity_along(local(), x_, rate) -
+          implicit_nodes::stiffness_along(local(), x_, rate));
+}
+
 PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<double>& R,
                                          VecX<double>& v_dot) {
   const Eigen::Index n_s = part_->n_s, n_d = local().n_d();
@@ -243,7 +326,8 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n_d);
   auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n_d);
   // With s = 1 / (c + beta), e = r_v + s r_q and y = x_d + e, the first row of the system in implicit_nodes.h
-  // is (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P e_r, without a product with K.
+  // is (S + c^2 w w^T) y + W kappa + (M delta + Q) x_r = M (e + s c alpha r_q) - Q e_s + E, without a product
+  // with K.
   const double s = 1 / (local().beta() + c_);
   e_ = k_v + s * r_q;
   y_ = M.cwiseProduct(e_);
@@ -251,8 +335,19 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   right_.setZero(B_.cols());
   if (frame_in_border()) {
     const VecX<double> r_v_s = v_dot.segment(part_->v0 + 6, n_s), r_q_s = q_dot.segment(part_->q0 + 7, n_s);
-    if (stiffness_changes_) y_ -= B_.middleCols(n_r() + 6, n_s) * (r_v_s + r_q_s / c_);
-    right_.segment(n_r() + 6, n_s) = -c_ * D_s_ * r_v_s - K_s_ * (c_ * c_ * r_v_s + c_ * r_q_s);
+    auto right_s = right_.segment(n_r() + 6, n_s);
+    right_s = -c_ * D_s_ * r_v_s - K_s_ * (c_ * c_ * r_v_s + c_ * r_q_s);
+    if (stiffness_changes_) {
+      const VecX<double> e_s = r_v_s + s * r_q_s;
+      y_ -= B_.middleCols(n_r() + 6, n_s) * e_s;
+      right_s -= J_Q_ * e_s;
+      right_.segment<3>(n_r() + 3) = B_.middleCols(n_r() + 3, 3).transpose() * e_;
+      if (local().beta() > 0) {
+        const VecX<double> excess = damping_excess(r_q_s, r_q);
+        y_ += excess;
+        right_s += J_.transpose() * excess.head(J_.rows());
+      }
+    }
   }
   factor_->solve(y_);
   right_.head(n_r()) += B_.leftCols(n_r()).transpose() * e_;

@@ -1,20 +1,25 @@
 // The matrix A of (I - c A) k = r (implicit_part.h) for a part with nodes: linearised elasticity and damping
-// under the reference conditions W^T d = 0 (include/pliant/part/local/README.md), with W = M G and G = [I,
-// -[s]x, J] at the nodes. H0 is the mass matrix of v_r (below) at d = 0. D_r and K_r are its damping and
-// stiffness, which are zero except for q_s. K is the stiffness over the local coordinates without its dense
-// term w w^T (NodalEnergy::rank_one). K_p is the share of K of energies that depend on positions
-// (NodalEnergy::Of::position). Let r_q, r_v be the given rates, k_q = r_q + c k_v, and v_r = (R^T c_dot,
-// omega, q_s_dot). The changes k_v - r_v are x_d for the local coordinates and x_r for v_r:
-//   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - ((c^2 + c beta) K + c^2 w w^T) e - P e_r ]
-//   [ W^T      0             ] [ kappa ] = [ 0                                                         ]
-//   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r e_r - c^2 P^T e                          ]
-//   [ c w^T             -1   ] [ zeta  ]   [ 0                                                         ]
-// with S = (1 + c alpha) M + (c beta + c^2) K sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0,
-// J], e = r_v + r_q / (c + beta) of the local coordinates, and e_r = c^2 r_v + c r_q of the parameters. kappa
-// and zeta are auxiliary unknowns. For beta > 0 the terms with w and P are not the exact derivatives; ROS2
-// keeps its order for every A. While K and c are constant, S is factored once. The border, the few columns
-// beside S, is solved with the factor of S: once for each factor, or in each step if global parameters change
-// W. A stage then costs one sparse solve.
+// under the reference conditions W^T d = 0 (include/pliant/part/local/README.md), with W = M G0, G0 = [I,
+// -[s]x, J] and G = [I, -[p]x, J] = G0 + delta at the nodes. Energies of displacements have the stiffness K_d
+// and the damping beta K_d. Energies of positions (NodalEnergy::Of::position) have K_p + w w^T and the
+// damping beta V_p (NodalEnergy::add_viscosity); the dense term w w^T comes from internal pressure. Let r_q,
+// r_v be the given rates, k_q = r_q + c k_v, and v_r = (R^T c_dot, omega, q_s_dot) with the damping D_r and
+// the stiffness K_r, which are zero except for q_s. The changes k_v - r_v are x_d for the local coordinates
+// and x_r for v_r. kappa is the sum of x_r and of the multipliers of the conditions. Lagrange's equations are
+//   S x_d + N x_r + W kappa + c w zeta = M e_a - S e - Q e_s + E
+//   N^T x_d + S_r x_r + P^T kappa      = -c D_r r_v - K_r e_r - Q^T e - J^T (Q e_s - E)
+//   W^T x_d + P x_r                    = 0
+//   c w^T x_d - zeta                   = -c w^T e
+// with s = 1/(c + beta) and
+//   S = (1 + c alpha) M + c (beta + c) K_d + c^2 K_p + c beta V_p (sparse),   N = M delta + Q,
+//   Q = (c^2 (K_p + w w^T) + c beta V_p) [0, 0, J],   S_r = G^T M G - P - P^T + c D_r + c^2 K_r + J^T Q,
+//   e = r_v + s r_q and e_a = e + s c alpha r_q of the local coordinates,
+//   e_s = r_v + s r_q and e_r = c^2 r_v + c r_q of the parameters,
+//   E = c beta s (V_p - K_p - w w^T) (r_q + J r_q,s) with r_q,s of the parameters.
+// Without energies of positions delta and P are neglected, because linear elasticity is for small
+// displacements; without parameters x_r is then 0. While K and c are constant, S is factored once. The
+// border, the few columns beside S, is solved with the factor of S: once for each factor, or in each step if
+// global parameters change W. A stage then costs one sparse solve.
 #pragma once
 
 #include <memory>
@@ -42,8 +47,8 @@ class ImplicitNodes final : public ImplicitPart {
 
  private:
   const NodalDeformation& local() const { return *part_->local->nodal(); }
-  /// Returns whether the border contains x_r: whether the part has dynamic global parameters.
-  bool frame_in_border() const { return part_->n_s > 0; }
+  /// Returns whether the border contains x_r.
+  bool frame_in_border() const { return part_->n_s > 0 || stiffness_changes_; }
   /// Computes K_: the stiffness of the energies of displacements, in the sparsity pattern of all energies.
   void make_pattern();
   /// Computes S_ and its factor at positions x (m) and time t (s), and Z_. Returns the number of
@@ -55,6 +60,8 @@ class ImplicitNodes final : public ImplicitPart {
   int factor_definite(double factor, double t);
   /// Computes the border B_, S^-1 B_ and the constant part of the Schur complement.
   void make_border(const NodalWorkspace& w, double c);
+  void add_frame_columns(const NodalWorkspace& w, double c);
+  VecX<double> damping_excess(const VecX<double>& r_q_s, const VecX<double>& r_q) const;
   /// Computes and factors the Schur complement of S.
   void make_core(const LocalWorkspace& w);
   /// Returns the values of fields at the attachment points of joints, three rows a point. nodal: one field
@@ -74,8 +81,11 @@ class ImplicitNodes final : public ImplicitPart {
   MatX<double> B_Z_, N_T_;   ///< B^T Z, N T
   MatX<double> core_fixed_;  ///< the constant part of the Schur complement of S
   Eigen::PartialPivLU<MatX<double>> core_;
-  MatX<double> K_elastic_;   ///< J^T P, a block of K_r
+  MatX<double> J_Q_;         ///< J^T Q over the global parameters
   MatX<double> K_s_, D_s_;   ///< blocks of K_r and D_r of the global parameters
+  MatX<double> P_, M_r_;     ///< P, and G^T M G - P - P^T
+  VecX<double> x_;           ///< x of the factor, m; used if the stiffness changes
+  MatX<double> J_;           ///< J of the factor; used if the stiffness changes
   MatX<double> H0_inverse_;  ///< inverse of H0; used if x_r is not in the border
   VecX<double> e_, y_, right_;
 };

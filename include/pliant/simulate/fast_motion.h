@@ -1,0 +1,75 @@
+// The fastest small motions about a state: eigenvalues of the Jacobian of the equations of motion. With x a
+// small change of the coordinates, as velocities, and x_dot its rate,
+//   d/dt (x, x_dot) = (x_dot, da/dq x + da/dv x_dot),
+// where a(t, q, v) are the accelerations with joints, limits, springs, elasticity and damping. An eigenvalue
+// -sigma +- i omega is a damped oscillation. Arnoldi's method (Saad, Numerical Methods for Large Eigenvalue
+// Problems, chapter 6) computes the eigenvalues of large modulus. It needs only products with the Jacobian,
+// which are central differences of the accelerations.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+/// An approximate eigenvalue and its eigenvector.
+struct FastMotion {
+  std::complex<double> value;              ///< 1/s
+  double residual = 0;                     ///< norm of the residual, relative to |value|
+  VecX<std::complex<double>> combination;  ///< the eigenvector, in the basis of FastMotions
+};
+
+/// Where most of the kinetic energy of a motion is.
+struct MotionPlace {
+  int part = -1;
+  /// Whether the local coordinates, or the global parameters, of this part have its largest share.
+  bool is_local = false, is_of_parameters = false;
+};
+
+/// Arnoldi's method about a state.
+class FastMotions {
+ public:
+  /// moves: for each velocity, whether it takes part in the motion; the others are kept constant. The
+  /// dynamics must outlive this object. state: its gains of Baumgarte's terms are those for its step length.
+  FastMotions(const Dynamics& dynamics, const State& state, std::vector<bool> moves);
+
+  /// Adds up to `count` vectors to the Krylov space. Returns false if no more vectors can be added, because
+  /// the space is invariant or contains its largest number of vectors.
+  bool extend(int count);
+  /// Returns the eigenvalues in the current space, without those that rounding errors cause.
+  std::vector<FastMotion> motions() const;
+  /// Returns the place of a motion.
+  MotionPlace place(const FastMotion& motion) const;
+  /// The stiffness K (1/s^2) and the damping D (1/s) against a motion: x_ddot + D x_dot + K x = 0.
+  struct Resistance {
+    double K = 0, D = 0;
+  };
+  /// Returns the resistance against a motion. A pair of complex eigenvalues determines it. The other of two
+  /// real eigenvalues is unknown; the resistance against the eigenvector is then computed.
+  Resistance resistance(const FastMotion& motion);
+
+ private:
+  VecX<double> scaled(const VecX<double>& x, const VecX<double>& x_dot) const;
+  void set_scales();
+  /// Returns the derivative of the accelerations along a change x of the coordinates and x_dot of the
+  /// velocities.
+  VecX<double> derivative(const VecX<double>& x, const VecX<double>& x_dot);
+  VecX<double> image(const VecX<double>& u);
+  /// Returns the velocities of a motion times their weights.
+  VecX<std::complex<double>> velocities(const FastMotion& motion) const;
+
+  const Dynamics& dynamics_;
+  State state_;
+  std::vector<bool> moves_;
+  Workspace<double> work_;
+  VecX<double> length_;  ///< size of a large change of each coordinate: m, or 1 for other units
+  VecX<double> weight_;  ///< square root of the inertia of each velocity
+  double rate_ = 0;      ///< a typical rate of change, 1/s; 0: nothing is stiff or damped
+  double largest_ = 0;   ///< largest norm of an image
+  std::vector<VecX<double>> basis_;
+  MatX<double> H_;  ///< the projection of the Jacobian onto the basis, with one row more
+};
+
+}  // namespace pliant

@@ -1,2 +1,0 @@
-// The library's instance of the function bodies in <pliant/simulate/fastest_sway-inl.h>.
-#include <pliant/simulate/fastest_sway-inl.h>
