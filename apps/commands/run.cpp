@@ -216,9 +216,9 @@ int run_scene(const RunCommand& command) {
               << pliant::count_text(run.record().steps_done, "step") << ", "
               << pliant::count_text(run.record().states, "state")
               << " recorded; largest error of the energy balance "
-              << pliant::rounded_text(run.record().energies.balance) << " J, "
-              << pliant::rounded_text(100 * run.record().energy_share, 2) << " % of the energy that moved ("
-              << pliant::rounded_text(run.record().energy_moved) << " J)" << contact_summary(run) << "\n";
+              << pliant::rounded_text(run.record().max_balance_error) << " J, "
+              << pliant::rounded_text(100 * run.record().energy_share, 2) << " % of the energy that could move ("
+              << pliant::rounded_text(run.record().movable_energy) << " J)" << contact_summary(run) << "\n";
   return command.strict && run.record().energy_share > pliant::kReportedEnergyShare ? kBoundExceeded : kDone;
 }
 
@@ -284,7 +284,7 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "steps with resting contacts are halved in both cases");
   command->add_flag("--strict", options->strict,
                     "End with exit code 6 if the error of the energy balance exceeds 1 % of the energy that "
-                    "moved");
+                    "could move");
   command->add_flag("--quiet", options->quiet, "Show no progress, notes or summary");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
   command

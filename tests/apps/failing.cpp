@@ -53,7 +53,7 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
     INFO(scene);
     const Result result = run(place, scene);
     CHECK(result.code == 5);
-    CHECK(has(result.err, "of the energy that moved (at most 50 %)"));
+    CHECK(has(result.err, "of the energy that could move (at most 50 %)"));
     CHECK(has(result.err, "energy of part 'p"));
     CHECK(has(result.err, "at t = "));
     CHECK(place.record("out")["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
@@ -62,7 +62,7 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   const std::string step = recommended_step(run(place, "limits_gain_energy").err);
   REQUIRE_FALSE(step.empty());
   CHECK(run(place, "limits_gain_energy", "--step " + step).code == 0);
-  CHECK(has(run(place, "open_slider_gains_energy").err, "no remedy was found in trials of 2 s"));
+  CHECK(has(run(place, "open_slider_gains_energy").err, "found no remedy"));
 }
 
 TEST_CASE("joints that cannot hold together end a run with code 4, with their names and the gap") {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <pliant/math/header_only.h>
 
@@ -12,42 +13,51 @@ namespace pliant {
 
 namespace energy_monitor {
 /// Share of its size by which every part is lifted, and share of the largest potential energy, in the
-/// smallest energy that moves.
+/// smallest energy that could move.
 inline constexpr double kLift = 0.01, kRounding = 1e-9;
+/// A part that moves by less than this share of its size in the whole time does not move.
+inline constexpr double kStill = 1e-5;
 }  // namespace energy_monitor
 
 PLIANT_INLINE EnergyMonitor::EnergyMonitor(const Model& model) {
   const double gravity = model.body().gravity_at(0).norm();
-  for (const PartModel& m : model.parts())
-    if (m.q0 >= 0) lift_ += energy_monitor::kLift * gravity * m.part->total_mass() * m.part->size();
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    lift_ += energy_monitor::kLift * gravity * m.part->total_mass() * m.part->size();
+    second_ += m.part->total_mass() * m.part->size() * m.part->size();
+  }
 }
 
-PLIANT_INLINE void EnergyMonitor::add(const Ledger& ledger) {
-  const std::array<double, EnergyRange::kPotentials> potentials{ledger.gravity, ledger.elastic, ledger.local,
-                                                                ledger.springs};
-  for (std::size_t k = 0; k < potentials.size(); ++k) {
-    range_.lowest[k] = std::min(range_.lowest[k], potentials[k]);
-    range_.highest[k] = std::max(range_.highest[k], potentials[k]);
+PLIANT_INLINE void EnergyMonitor::add(const Ledger& ledger, double t) {
+  const Potentials now{ledger.gravity, ledger.elastic, ledger.local, ledger.springs};
+  if (!started_) {
+    start_kinetic_ = ledger.kinetic;
+    start_ = lowest_ = now;
+    started_ = true;
   }
-  range_.kinetic = std::max(range_.kinetic, ledger.kinetic);
-  range_.work = std::max(range_.work, ledger.work.lpNorm<1>());
-  range_.balance = std::max(range_.balance, std::abs(ledger.balance));
+  time_ = std::max(time_, t);
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    lowest_[k] = std::min(lowest_[k], now[k]);
+    largest_potential_ = std::max(largest_potential_, std::abs(now[k]));
+  }
+  kinetic_ = std::max(kinetic_, ledger.kinetic);
+  work_ = std::max(work_, ledger.work.lpNorm<1>());
+  const bool finite = std::isfinite(ledger.energy()) && std::isfinite(ledger.balance);
+  error_ = finite ? std::max(error_, std::abs(ledger.balance)) : std::numeric_limits<double>::infinity();
 }
 
-PLIANT_INLINE double EnergyMonitor::moved() const {
-  double sum = range_.kinetic + range_.work, largest = 0;
-  for (std::size_t k = 0; k < EnergyRange::kPotentials; ++k) {
-    if (!(range_.lowest[k] <= range_.highest[k])) continue;  // no ledger yet
-    sum += range_.highest[k] - range_.lowest[k];
-    largest = std::max({largest, std::abs(range_.lowest[k]), std::abs(range_.highest[k])});
-  }
-  return std::max({sum, lift_, energy_monitor::kRounding * largest});
+PLIANT_INLINE double EnergyMonitor::movable() const {
+  double sum = start_kinetic_ + work_;
+  for (std::size_t k = 0; k < start_.size(); ++k) sum += start_[k] - lowest_[k];
+  return std::max({sum, lift_, energy_monitor::kRounding * largest_potential_});
 }
 
 PLIANT_INLINE double EnergyMonitor::share() const {
-  if (range_.balance == 0) return 0;
-  const double ratio = range_.balance / moved();
-  return std::isfinite(ratio) ? ratio : 1;
+  if (!std::isfinite(error_)) return error_;
+  const double speed = time_ > 0 ? energy_monitor::kStill / time_ : 0,  // in sizes per second
+      still = 0.5 * second_ * speed * speed;
+  if (error_ == 0 || kinetic_ + work_ <= still) return 0;
+  return error_ / movable();
 }
 
 }  // namespace pliant

@@ -1,51 +1,44 @@
-// The scale of the error of the energy balance: the energy that has moved in a simulation.
+// The scale of the error of the energy balance: the energy that could move in a simulation.
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include <pliant/body/ledger.h>
 #include <pliant/body/model.h>
 
 namespace pliant {
 
-/// The range of the energies of the ledgers of a simulation. A resumed run continues from it.
-struct EnergyRange {
-  /// Kinds of potential energy: gravity, parameters, local deformation, springs.
-  static constexpr std::size_t kPotentials = 4;
-  std::array<double, kPotentials> lowest, highest;  ///< of each kind of potential energy, J
-  double kinetic = 0;                               ///< largest kinetic energy, J
-  double work = 0;                                  ///< largest sum of the magnitudes of all works, J
-  double balance = 0;                               ///< largest |Ledger::balance|, J
-
-  EnergyRange() {
-    lowest.fill(std::numeric_limits<double>::infinity());
-    highest.fill(-std::numeric_limits<double>::infinity());
-  }
-};
-
-/// Compares the error of the energy balance with the energy that moved: the largest kinetic energy, plus the
-/// range of each potential energy, plus the magnitudes of all works.
+/// Compares the error of the energy balance with the energy that could move: the kinetic energy at the start,
+/// plus the potential energies at the start above their lowest values, plus the magnitudes of all works. A
+/// motion without error has at most this kinetic energy. An error that grows hardly changes it.
 class EnergyMonitor {
  public:
   explicit EnergyMonitor(const Model& model);
 
-  /// Includes a ledger.
-  void add(const Ledger& ledger);
-  /// Returns the energy that moved, J. It is at least the energy that lifts every part by a hundredth of its
-  /// size, and at least 1e-9 of the largest potential energy: below these the errors of resting contact and
-  /// of rounding are not errors of the motion.
-  double moved() const;
-  /// Returns the largest error of the balance as a share of the energy that moved, from 0 to about 1. The
-  /// share is 1 if an energy is not finite.
+  /// Includes the ledger of a state at time t (s). The first ledger is that of the start.
+  void add(const Ledger& ledger, double t);
+  /// Returns the energy that could move, J. It is at least the energy that lifts every part by a hundredth of
+  /// its size, and at least 1e-9 of the largest potential energy: below these the errors of resting contact
+  /// and of rounding are not errors of the motion.
+  double movable() const;
+  /// Returns the largest error of the balance as a share of the energy that could move. The share is 0 if
+  /// nothing has moved: if the works and the kinetic energy are below those of parts that move by 1e-5 of
+  /// their size in the time so far. It is infinite if an energy is not finite.
   double share() const;
 
-  const EnergyRange& range() const { return range_; }
-  void set_range(const EnergyRange& range) { range_ = range; }
+  double max_kinetic() const { return kinetic_; }  ///< largest kinetic energy, J
+  double max_error() const { return error_; }      ///< largest |Ledger::balance|, J
 
  private:
-  double lift_ = 0;  ///< the energy that lifts every part by a hundredth of its size, J
-  EnergyRange range_;
+  /// Gravity, parameters, local deformation, springs.
+  using Potentials = std::array<double, 4>;
+
+  double lift_ = 0;    ///< the energy that lifts every part by a hundredth of its size, J
+  double second_ = 0;  ///< sum of the masses times the squares of the sizes, kg m^2
+  bool started_ = false;
+  double start_kinetic_ = 0, kinetic_ = 0, work_ = 0, error_ = 0, time_ = 0;
+  Potentials start_{}, lowest_{};
+  double largest_potential_ = 0;  ///< largest magnitude of a potential energy, J
 };
 
 }  // namespace pliant

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include <pliant/body/step_failure.h>
+#include <pliant/local/solid/inverted_element.h>
 #include <pliant/math/header_only.h>
 #include <pliant/project/project.h>
 
@@ -19,13 +20,17 @@ inline constexpr double kMaxPrediction = 0.01, kPredictionGrowth = 10;
 
 PLIANT_INLINE void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h) {
   if (dynamics.model().joints().empty()) return;
-  {
+  try {
     Workspace<double> work;
     StepCounters counters;
     State open = state;
     dynamics.accelerations(state.time(), state.q, state.v, state, work);
     StepContext step(dynamics, open, work, counters, state.time(), h);
     fail_on_open_conflict(step);
+  } catch (const NumericalFailure&) {
+    return;
+  } catch (const InvertedElement&) {
+    return;
   }
   const double rate = dynamics.model().body().stabilization.rate,
                longest = rate > 0 ? predicted_conflict::kMaxPrediction / rate : h;

@@ -167,6 +167,21 @@ PLIANT_INLINE void Simulation::begin_step() {
   switching_.begin_step();
 }
 
+/// Returns the largest stable step at the first state, s; infinity if it cannot be computed.
+PLIANT_INLINE double Simulation::stable_step_at_start() {
+  struct Swapped {
+    State &one, &other;
+    Swapped(State& a, State& b) : one(a), other(b) { std::swap(one, other); }
+    ~Swapped() { std::swap(one, other); }
+  };
+  const Swapped at_start(state_, first_);
+  try {
+    return largest_stable_step(*this);
+  } catch (const std::exception&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
 /// Returns the failure of a step of h seconds with the place of the step, the parts that have burst before it
 /// and, if the step is fixed and longer, the largest stable step at the first state. t: time of the failure,
 /// s.
@@ -174,9 +189,7 @@ PLIANT_INLINE NumericalFailure Simulation::completed(const std::string& what, do
   std::ostringstream message;
   message << failure_report::place(state_.time(), h) << failure_report::burst_parts(model_, state_) << what;
   if (!scale_) {
-    std::swap(state_, first_);
-    const double stable = largest_stable_step(*this);
-    std::swap(state_, first_);
+    const double stable = stable_step_at_start();
     message.precision(3);
     if (stable < h) message << "; the largest stable step at the start is about " << stable << " s";
   }

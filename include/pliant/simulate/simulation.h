@@ -108,6 +108,7 @@ class Simulation {
   void reject_step();
   void end_step();
   [[noreturn]] void fail_by(const std::string& fault);
+  double stable_step_at_start();
   NumericalFailure completed(const std::string& what, double t, double h);
   StepContext context();
   void switch_joints(double t, double tolerance);

@@ -182,6 +182,18 @@ void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
   simulation_->set_state(std::move(last));
 }
 
+/// Includes the energies of the first `states` recorded states, as the session that recorded them did.
+void Run::add_recorded_energies(const Recording& recorded, std::int64_t states) {
+  Workspace<double> work;
+  for (std::int64_t row = 0; row < states; ++row) {
+    const State state = recorded.state(row);
+    Ledger ledger = simulation_->dynamics().ledger(state, work);
+    ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
+    energies_->add(ledger, state.time());
+  }
+  if (states > 0) record_energies();
+}
+
 void Run::resume_recording(const StableStep& stable) {
   record_ = read_run_record(*folder_ / kRunFile);
   check_resumable();
@@ -199,7 +211,7 @@ void Run::resume_recording(const StableStep& stable) {
   if (scene_->contacts) keep = std::min(keep, contact_checksums(folder_->path()).whole_states());
   check_numbers(recorded, keep);
   set_last_state(recorded, keep);
-  energies_->set_range(record_.energies);
+  add_recorded_energies(recorded, keep);
   last_recorded_ = simulation_->state();
   open_tables(keep);
   if (keep == 0 && simulation_->time() == 0) record_state();

@@ -19,13 +19,13 @@ std::string percent(double share) {
 
 void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before) {
   if (!(monitor.share() > kLargestEnergyShare)) return;
-  const double error = monitor.range().balance;
+  const double error = monitor.max_error();
   std::ostringstream message;
   message << "at t = " << rounded_text(simulation.time()) << " s, in steps of "
           << rounded_text(simulation.state().h) << " s, ";
   if (std::isfinite(error))
     message << "the energies have changed by " << rounded_text(error) << " J more than the works, which is "
-            << percent(monitor.share()) << " of the energy that moved (at most "
+            << percent(monitor.share()) << " of the energy that could move (at most "
             << percent(kLargestEnergyShare) << "): ";
   else
     message << "the energies are not finite: ";
@@ -38,8 +38,8 @@ std::string energy_note(const Simulation& simulation, const EnergyMonitor& monit
   const double share = monitor.share();
   const bool fixed_first_order = simulation.tolerance() == 0 && method.order() == 1;
   if (share == 0 || (share <= kReportedEnergyShare && !fixed_first_order)) return {};
-  const std::string error = std::string(kNote) + rounded_text(monitor.range().balance) + " J, which is " +
-                            percent(share) + " of the energy that moved (" + rounded_text(monitor.moved()) +
+  const std::string error = std::string(kNote) + rounded_text(monitor.max_error()) + " J, which is " +
+                            percent(share) + " of the energy that could move (" + rounded_text(monitor.movable()) +
                             " J). ",
                     order = std::string("The method ") + method.name() + " is of order " +
                             std::to_string(method.order()) + ".";

@@ -9,7 +9,6 @@
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/run/energy_gate.h>
 #include <pliant/io/run/scheduled_step.h>
-#include <pliant/local/solid/inverted_element.h>
 #include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/simulation.h>
 #include <pliant/simulate/stable_step.h>
@@ -31,6 +30,8 @@ struct Trial {
   std::string name;
 };
 
+enum class Outcome { reaches_end, fails, unfinished };
+
 /// Trial runs of a scene, which end at a common deadline.
 class Trials {
  public:
@@ -43,27 +44,25 @@ class Trials {
 
   bool over() const { return Clock::now() > deadline_ || (stop_ && stop_()); }
 
-  /// Returns whether a run with these settings reaches the end of the scene with a valid energy balance. The
-  /// trial has the steps of a run, and examines the states that the run would record.
-  bool reaches_end(const Trial& trial) const {
+  /// Performs a trial. It has the steps of a run, and examines the energies of the states that the run would
+  /// record.
+  Outcome outcome(const Trial& trial) const {
     try {
       Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance);
       const FrameSchedule schedule = trial.tolerance > 0
                                          ? FrameSchedule::with_free_steps(scene_.end, scene_.frame_rate)
                                          : FrameSchedule(scene_.end, trial.step, scene_.frame_rate);
       EnergyMonitor monitor(simulation.model());
-      monitor.add(simulation.ledger());
+      monitor.add(simulation.ledger(), 0);
       while (!at_end(simulation, schedule)) {
-        if (over()) return false;
+        if (over()) return Outcome::unfinished;
         if (!scheduled_step(simulation, schedule)) continue;
-        monitor.add(simulation.ledger());
-        if (monitor.share() > kLargestEnergyShare) return false;
+        monitor.add(simulation.ledger(), simulation.time());
+        if (monitor.share() > kLargestEnergyShare) return Outcome::fails;
       }
-      return true;
-    } catch (const StepFailure&) {
-      return false;
-    } catch (const InvertedElement&) {
-      return false;
+      return Outcome::reaches_end;
+    } catch (const std::exception&) {  // the advice never replaces the failure of the run
+      return Outcome::fails;
     }
   }
 
@@ -74,13 +73,12 @@ class Trials {
   Clock::time_point deadline_;
 };
 
-/// Returns the trials with shorter fixed steps, the longest step first.
+/// Returns the trials with shorter fixed steps: first the largest stable step, then fractions of the step.
 std::vector<Trial> shorter_steps(Scene& scene, const FailedRun& failed) {
   std::vector<double> steps;
-  for (double h = kShorter * failed.step; h > kShortest * failed.step; h *= kShorter) steps.push_back(h);
   const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
   if (stable < failed.step) steps.push_back(stable);
-  std::sort(steps.begin(), steps.end(), std::greater<>());
+  for (double h = kShorter * failed.step; h > kShortest * failed.step; h *= kShorter) steps.push_back(h);
   std::vector<Trial> trials;
   for (const double h : steps)
     trials.push_back(
@@ -98,23 +96,38 @@ std::vector<Trial> other_tolerances(const Scene& scene, const FailedRun& failed)
   return trials;
 }
 
+std::vector<Trial> trials_for(Scene& scene, const FailedRun& failed) {
+  std::vector<Trial> trials;
+  try {
+    trials = failed.step > 0 ? shorter_steps(scene, failed) : other_tolerances(scene, failed);
+  } catch (const std::exception&) {  // the stable step cannot be computed
+  }
+  if (failed.step > 0 || failed.integrator != kAutomatic)
+    trials.push_back({kAutomatic, 0, kStandardTolerance, "the integrator auto"});
+  return trials;
+}
+
+/// Adds a name to a list with commas.
+void add_name(std::string& list, const std::string& name) {
+  list += (list.empty() ? "" : ", ") + name;
+}
+
 }  // namespace
 
 std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
                         const std::function<bool()>& stop) {
-  std::vector<Trial> trials =
-      failed.step > 0 ? shorter_steps(scene, failed) : other_tolerances(scene, failed);
-  if (failed.step > 0 || failed.integrator != kAutomatic)
-    trials.push_back({kAutomatic, 0, kStandardTolerance, "the integrator auto"});
   const Trials runs(scene, failed.threads, seconds, stop);
-  std::string tried;
-  for (const Trial& trial : trials) {
+  std::string failing, unfinished;
+  for (const Trial& trial : trials_for(scene, failed)) {
     if (runs.over()) break;
-    if (runs.reaches_end(trial)) return trial.name + " reaches the end of the scene";
-    tried += (tried.empty() ? "" : ", ") + trial.name;
+    const Outcome outcome = runs.outcome(trial);
+    if (outcome == Outcome::reaches_end) return trial.name + " reaches the end of the scene";
+    add_name(outcome == Outcome::fails ? failing : unfinished, trial.name);
   }
-  return "no remedy was found in trials of " + rounded_text(seconds) + " s" +
-         (tried.empty() ? "" : ", which failed with " + tried);
+  std::string text = "trials of about " + rounded_text(seconds, 2) + " s found no remedy";
+  if (!failing.empty()) text += "; they failed with " + failing;
+  if (!unfinished.empty()) text += "; they did not finish with " + unfinished;
+  return text;
 }
 
 }  // namespace pliant

@@ -220,15 +220,22 @@ void Run::replace_notes(bool (*is_old)(const std::string&), const std::vector<st
 /// Returns the ledger of the present state. Throws NumericalFailure if its energies are not valid.
 Ledger Run::checked_ledger() {
   const Ledger ledger = simulation_->ledger();
-  const EnergyRange before = energies_->range();
-  energies_->add(ledger);
+  const EnergyMonitor before = *energies_;
+  energies_->add(ledger, simulation_->time());
   try {
     require_energy_balance(*simulation_, *energies_, last_recorded_);
   } catch (...) {
-    energies_->set_range(before);
+    energies_ = before;
     throw;
   }
   return ledger;
+}
+
+void Run::record_energies() {
+  record_.max_balance_error = energies_->max_error();
+  record_.max_kinetic = energies_->max_kinetic();
+  record_.movable_energy = energies_->movable();
+  record_.energy_share = energies_->share();
 }
 
 /// Records the last good state of a simulation that has failed, so that the motion before the failure can be
@@ -267,9 +274,7 @@ void Run::record_state() {
   note_turns();
   note_ground();
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
-  record_.energies = energies_->range();
-  record_.energy_moved = energies_->moved();
-  record_.energy_share = energies_->share();
+  record_energies();
 }
 
 /// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
@@ -386,13 +391,19 @@ void Run::step_to_end() {
   progress_->end();
 }
 
-/// Writes the recording and the tables of a run that has failed after `elapsed` seconds of wall time.
-void Run::end_failed(double elapsed) {
-  record_last_valid_state();
-  record_.add_seconds("simulate", elapsed);
-  save(true);
-  note_violations();
-  write_tables();
+/// Writes the recording and the tables of a run that has failed after `elapsed` seconds of wall time. Returns
+/// a text about an error while writing, which does not replace the failure; empty if there is none.
+std::string Run::end_failed(double elapsed) {
+  try {
+    record_last_valid_state();
+    record_.add_seconds("simulate", elapsed);
+    save(true);
+    note_violations();
+    write_tables();
+    return {};
+  } catch (const std::exception& error) {
+    return std::string("; the files of the run are not complete: ") + error.what();
+  }
 }
 
 bool Run::simulate() {
@@ -401,8 +412,9 @@ bool Run::simulate() {
     try {
       step_to_end();
     } catch (const NumericalFailure& failure) {
-      end_failed(seconds_since(start));
-      throw NumericalFailure(failure.what() + ("; " + remedy(seconds_since(start))), failure.time);
+      const std::string incomplete = end_failed(seconds_since(start));
+      throw NumericalFailure(failure.what() + ("; " + remedy(seconds_since(start))) + incomplete,
+                             failure.time);
     } catch (const StepFailure&) {
       end_failed(seconds_since(start));
       throw;

@@ -103,7 +103,8 @@ void remove_unfinished_folders(const fs::path& folder) {
                     [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); }))
       unfinished.push_back(entry.path());
   }
-  for (const fs::path& path : unfinished) fs::remove_all(path);
+  std::error_code ignored;  // a folder that cannot be removed does not prevent a run
+  for (const fs::path& path : unfinished) fs::remove_all(path, ignored);
 }
 
 }  // namespace

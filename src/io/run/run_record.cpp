@@ -143,23 +143,12 @@ Json work_of(const RunRecord& r) {
           {"surfaces", r.counters.surfaces}};
 }
 
-/// The ranges of the potential energies, [[lowest, highest], ...] in J; empty before the first state.
-Json potentials_of(const EnergyRange& energies) {
-  Json ranges = Json::array();
-  for (std::size_t k = 0; k < EnergyRange::kPotentials; ++k)
-    if (energies.lowest[k] <= energies.highest[k])
-      ranges.push_back({energies.lowest[k], energies.highest[k]});
-  return ranges;
-}
-
 Json monitors_of(const RunRecord& r) {
-  return {{"max_balance_error", r.energies.balance},
+  return {{"max_balance_error", r.max_balance_error},
           {"balance_share", r.energy_share},
-          {"energy_moved", r.energy_moved},
+          {"movable_energy", r.movable_energy},
           {"max_energy", r.max_energy},
-          {"max_kinetic", r.energies.kinetic},
-          {"max_work", r.energies.work},
-          {"potential_ranges", potentials_of(r.energies)},
+          {"max_kinetic", r.max_kinetic},
           {"max_gap", r.max_gap},
           {"open_gap", r.open_gap},
           {"max_depth", r.max_depth},
@@ -280,18 +269,11 @@ void read_work(const Json& work, RunRecord& r) {
 }
 
 void read_monitors(const Json& monitors, RunRecord& r) {
-  monitors.at("max_balance_error").get_to(r.energies.balance);
+  monitors.at("max_balance_error").get_to(r.max_balance_error);
   monitors.at("max_energy").get_to(r.max_energy);
-  monitors.at("max_kinetic").get_to(r.energies.kinetic);
-  r.energies.work = monitors.value("max_work", 0.0);
+  monitors.at("max_kinetic").get_to(r.max_kinetic);
   r.energy_share = monitors.value("balance_share", 0.0);
-  r.energy_moved = monitors.value("energy_moved", 0.0);
-  if (const Json ranges = monitors.value("potential_ranges", Json::array());
-      ranges.size() == EnergyRange::kPotentials)
-    for (std::size_t k = 0; k < EnergyRange::kPotentials; ++k) {
-      r.energies.lowest[k] = ranges[k][0];
-      r.energies.highest[k] = ranges[k][1];
-    }
+  r.movable_energy = monitors.value("movable_energy", 0.0);
   monitors.at("max_gap").get_to(r.max_gap);
   monitors.at("open_gap").get_to(r.open_gap);
   r.max_depth = monitors.value("max_depth", 0.0);

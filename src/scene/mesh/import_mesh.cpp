@@ -1,5 +1,7 @@
 #include "import_mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -7,6 +9,9 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -26,6 +31,9 @@
 
 namespace pliant {
 namespace {
+
+/// Exit code of the process of an import that has no memory left.
+constexpr int kOutOfMemory = 8;
 
 /// The vertices and triangles of all meshes of a file.
 struct Corners {
@@ -101,20 +109,23 @@ void send(int to, const std::vector<Number>& numbers) {
   }
   const int silent = ::open("/dev/null", O_WRONLY);
   if (silent >= 0) ::dup2(silent, STDERR_FILENO);
-  Corners all;
-  std::vector<char> message;
   try {
-    all = import_here(file);
-  } catch (const std::bad_alloc&) {
-    const std::string what = "the import needs too much memory";
-    message.assign(what.begin(), what.end());
-  } catch (const std::exception& failure) {
-    const std::string what = failure.what();
-    message.assign(what.begin(), what.end());
+    Corners all;
+    std::vector<char> message;
+    try {
+      all = import_here(file);
+    } catch (const std::bad_alloc&) {
+      ::_exit(kOutOfMemory);
+    } catch (const std::exception& failure) {
+      const std::string what = failure.what();
+      message.assign(what.begin(), what.end());
+    }
+    send(to, message);
+    send(to, all.vertices);
+    send(to, all.triangles);
+  } catch (...) {  // no exception may reach the code of the parent
+    ::_exit(kOutOfMemory);
   }
-  send(to, message);
-  send(to, all.vertices);
-  send(to, all.triangles);
   ::_exit(0);
 }
 
@@ -166,12 +177,32 @@ std::string import_apart(const std::string& file) {
   if (child < 0)
     throw std::system_error(errno, std::generic_category(), "cannot start the import of " + file);
   if (!in_time) ::kill(child, SIGKILL);
-  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!in_time)
     throw std::invalid_argument("the import takes longer than " + std::to_string(kImportSeconds) +
                                 " s: the file is damaged or too large");
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kOutOfMemory)
+    throw std::invalid_argument("the import needs more than " + std::to_string(kImportBytes >> 30) + " GiB");
   return bytes;
+}
+
+/// Adds a note if single precision moves vertices by more than 1e-6 of the size of the mesh.
+void add_precision_note(RawMesh& mesh) {
+  Vec3<double> low = mesh.vertices.front(), high = low;
+  double farthest = 0;
+  for (const Vec3<double>& x : mesh.vertices) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    farthest = std::max(farthest, x.lpNorm<Eigen::Infinity>());
+  }
+  const double rounding = std::numeric_limits<float>::epsilon() * farthest, size = (high - low).maxCoeff();
+  if (!(rounding > 1e-6 * size)) return;
+  std::ostringstream note;
+  note << "coordinates of this format are read in single precision, which moves vertices by up to " << rounding
+       << " m; OBJ, PLY and STL files keep double precision";
+  mesh.notes.push_back(note.str());
 }
 
 }  // namespace
@@ -195,6 +226,7 @@ RawMesh import_mesh(const std::filesystem::path& file) {
     mesh.triangles.push_back(corners);
   }
   if (mesh.triangles.empty()) throw std::invalid_argument("found no triangle");
+  add_precision_note(mesh);
   return mesh;
 }
 

@@ -58,7 +58,13 @@ std::string_view Words::on_line() {
       return {};
     }
     const std::string_view word = word_from(at_);
-    if (word != "\\" || (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '\r')) return word;
+    const bool ends_line = at_ >= text_.size() || text_[at_] == '\n' || text_[at_] == '\r';
+    if (!ends_line || word.back() != '\\') return word;
+    if (word.size() > 1) {  // the next call continues with the backslash
+      --at_;
+      --word_size_;
+      return word.substr(0, word.size() - 1);
+    }
     at_ = std::min(text_.size(), text_.find('\n', at_));
     if (at_ < text_.size()) ++at_;
   }

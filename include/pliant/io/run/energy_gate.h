@@ -9,10 +9,10 @@
 
 namespace pliant {
 
-/// Largest error of the energy balance without a warning, as a share of the energy that moved
+/// Largest error of the energy balance without a warning, as a share of the energy that could move
 /// (EnergyMonitor).
 inline constexpr double kReportedEnergyShare = 0.01;
-/// Largest error of the energy balance of a run, as a share of the energy that moved. Above it the steps, and
+/// Largest error of the energy balance of a run, as a share of the energy that could move. Above it the steps, and
 /// not the forces, make most of the motion, and the run fails.
 inline constexpr double kLargestEnergyShare = 0.5;
 

@@ -101,8 +101,10 @@ class Run {
   void note_setup(const StableStep& stable);
   void record_state();
   Ledger checked_ledger();
+  void record_energies();
+  void add_recorded_energies(const Recording& recorded, std::int64_t states);
   void record_last_valid_state();
-  void end_failed(double elapsed);
+  std::string end_failed(double elapsed);
   std::string remedy(double elapsed) const;
   void step_to_end();
   void flush(bool to_disk = false);

@@ -13,7 +13,6 @@
 #include <pliant/io/checksums.h>
 #include <pliant/io/run/build_info.h>
 #include <pliant/io/run/estimate_error.h>
-#include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/simulation.h>
 
 namespace pliant {
@@ -57,9 +56,10 @@ struct RunRecord {
 
   // Monitors and notes.
   double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest stable step, s
-  EnergyRange energies;                                          ///< range of the energies at recorded states
-  double energy_moved = 0;                                       ///< the energy that moved (EnergyMonitor), J
-  double energy_share = 0;  ///< largest error of the balance as a share of the energy that moved
+  double max_balance_error = 0;  ///< largest |Ledger::balance| at a recorded state, J
+  double max_kinetic = 0;        ///< largest kinetic energy at a recorded state, J
+  double movable_energy = 0;     ///< the energy that could move (EnergyMonitor), J
+  double energy_share = 0;       ///< largest error of the balance as a share of the energy that could move
   double max_energy = 0;    ///< largest |total energy| at a recorded state, J; its zero is arbitrary
   double max_gap = 0;       ///< largest gap of a closed joint at a recorded state, m
   /// Largest ratio of a contact depth to the size of the smaller part, at a recorded state.
