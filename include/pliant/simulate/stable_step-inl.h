@@ -42,6 +42,8 @@ inline constexpr double kReported = 0.3;
 /// If the accelerations deform or turn a part by more than this in one stable step, in sizes of the part or
 /// radians, the start is far from equilibrium.
 inline constexpr double kFar = 0.5;
+/// A part that is farther than this from its initial position, in sizes of the part, has burst away.
+inline constexpr double kFarOut = 1e6;
 
 /// Returns the largest step (s) for which a method keeps the solutions of x_ddot + D x_dot + K x = 0 bounded:
 /// infinite without stiffness and damping, 0 if one of them is not finite. K: 1/s^2; D: 1/s.
@@ -180,13 +182,23 @@ class StableStepSearch {
     return moves;
   }
 
+  /// Returns whether a part has left its initial position so far that differences of the accelerations drown
+  /// in rounding errors. The eigenvalues at the initial state are then used.
+  bool is_far_out() const {
+    const State initial = model_.initial_state();
+    return std::any_of(model_.parts().begin(), model_.parts().end(), [&](const PartModel& m) {
+      return m.q0 >= 0 &&
+             !((state_.q.segment<3>(m.q0) - initial.q.segment<3>(m.q0)).norm() <= kFarOut * m.part->size());
+    });
+  }
+
   /// Limits the step by the eigenvalues of the motion about the state.
   void limit_by_motions() {
     if (model_.islands().empty() && !has_stiffness(model_)) return;
     const auto limits = [&](double K, double D) { return std::isfinite(stable_step_of(method_, K, D)); };
     if (!limits(1, 0) && !limits(0, 1)) return;
     // Baumgarte's terms have a limit of their own.
-    State state = state_;
+    State state = is_far_out() ? model_.initial_state() : state_;
     std::replace(state.joints.begin(), state.joints.end(), JointMode::closing, JointMode::closed);
     JointPolicy policy = dynamics_.joint_policy();
     policy.projected = true;
