@@ -87,7 +87,7 @@ void print_estimate(pliant::Scene& scene) {
             << " MB\n";
 }
 
-// Tells how long it took to read and prepare a scene, if this is a noticeable time.
+// Prints how long it took to read and prepare a scene, if this is a noticeable time.
 void print_preparation(double seconds) {
   constexpr double kNoticeable = 1;
   if (seconds > kNoticeable)

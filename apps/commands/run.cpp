@@ -153,6 +153,17 @@ std::string contact_summary(const pliant::Run& run) {
          " m/s, largest overlap " + pliant::rounded_text(counters.contact_overlap) + " m";
 }
 
+/// Prints the last line of a run: its steps and its errors.
+void print_summary(const pliant::Run& run) {
+  const pliant::RunRecord& record = run.record();
+  std::cout << run.folder().string() << ": t = " << record.time << " s, "
+            << pliant::count_text(record.steps_done, "step") << ", "
+            << pliant::count_text(record.states, "state") << " recorded; largest error of the energy balance "
+            << pliant::rounded_text(record.max_balance_error) << " J, "
+            << pliant::rounded_text(100 * record.energy_share, 2) << " % of the energy that could move ("
+            << pliant::rounded_text(record.movable_energy) << " J)" << contact_summary(run) << "\n";
+}
+
 int run_scene(const RunCommand& command) {
   const fs::path folder = folder_of(command);
   SceneOptions asked = command.scene;
@@ -211,14 +222,7 @@ int run_scene(const RunCommand& command) {
     return kSignal + stop_signal();
   }
   run.finish(pliant::RunRecord::Status::complete);
-  if (!command.quiet)
-    std::cout << folder.string() << ": t = " << run.record().time << " s, "
-              << pliant::count_text(run.record().steps_done, "step") << ", "
-              << pliant::count_text(run.record().states, "state")
-              << " recorded; largest error of the energy balance "
-              << pliant::rounded_text(run.record().max_balance_error) << " J, "
-              << pliant::rounded_text(100 * run.record().energy_share, 2) << " % of the energy that could move ("
-              << pliant::rounded_text(run.record().movable_energy) << " J)" << contact_summary(run) << "\n";
+  if (!command.quiet) print_summary(run);
   return command.strict && run.record().energy_share > pliant::kReportedEnergyShare ? kBoundExceeded : kDone;
 }
 

@@ -36,7 +36,8 @@ int verify(const fs::path& folder, bool quiet) {
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(quiet);
   const fs::path record_file = pliant::find_run_file(folder);
-  if (!record_file.empty() && record_file.parent_path() != (folder / pliant::kRunFile).lexically_normal().parent_path())
+  if (!record_file.empty() &&
+      record_file.parent_path() != (folder / pliant::kRunFile).lexically_normal().parent_path())
     throw pliant::RecordingMismatch("the run in " + folder.string() +
                                     " was killed at its beginning; pliant run --resume continues it");
   const pliant::RunRecord record = pliant::read_run_record(folder / pliant::kRunFile);

@@ -1,16 +1,21 @@
 #include <pliant/io/checksums.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <pliant/io/format/whole_file.h>
 #include <pliant/io/recording.h>
+#include <pliant/io/retry.h>
 
 namespace pliant {
 namespace {
@@ -48,8 +53,24 @@ std::uint32_t crc32_after(std::uint32_t before, const void* bytes, std::size_t s
 }
 
 std::uint32_t crc32_of_file(const std::filesystem::path& path) {
-  const std::string bytes = read_whole_file(path);
-  return crc32_after(0, bytes.data(), bytes.size());
+  constexpr std::size_t kBlock = std::size_t{1} << 20;  // a table may be larger than the memory
+  std::vector<char> block(kBlock);
+  const int file = retry([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
+  const auto fail = [&] {
+    const int error = errno;
+    if (file >= 0) ::close(file);
+    throw std::system_error(error, std::generic_category(), "cannot read " + path.string());
+  };
+  if (file < 0) fail();
+  std::uint32_t checksum = 0;
+  for (;;) {
+    const ssize_t count = retry([&] { return ::read(file, block.data(), block.size()); });
+    if (count < 0) fail();
+    if (count == 0) break;
+    checksum = crc32_after(checksum, block.data(), static_cast<std::size_t>(count));
+  }
+  ::close(file);
+  return checksum;
 }
 
 std::string crc32_text(std::uint32_t checksum) {

@@ -125,7 +125,7 @@ TEST_CASE("two runs have equal trajectory hashes in run.json if and only if thei
   CHECK(hash("one") != hash("heavy"));
 }
 
-TEST_CASE("a damaged checkpoint is told, and the run continues from an earlier state to the same files") {
+TEST_CASE("a damaged checkpoint is reported, and the run continues from an earlier state to the same files") {
   const FaultyRun place("--set /output/frame_rate=4", "--checkpoint-every 0 --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");

@@ -183,7 +183,7 @@ TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run ca
     CHECK(fail_while_resumed(place, place / "killed", faults[i].first, faults[i].second, unbroken) == "");
   }
 }
-TEST_CASE("I51: each of 600 calls on files may fail, and the run can be resumed", "[long]") {
+TEST_CASE("I51: each of 600 calls on files may fail, and the run can be resumed", "[.extended]") {
   check_failures("--end 0.05 --threads 1", "--obj --checkpoint-every 0 --quiet", 600);
 }
 

@@ -59,10 +59,10 @@ TEST_CASE("I53: a run with a checkpoint after each step is resumed to the same f
 TEST_CASE("I53: a run that draws pictures is resumed to the same files") {
   check_kills(FaultyRun("--end 0.03 --size 40x30", "--png --quiet"), 4, 8);
 }
-TEST_CASE("I53: a run is resumed to the same files from each of its first 600 system calls", "[long]") {
+TEST_CASE("I53: a run is resumed to the same files from each of its first 600 system calls", "[.extended]") {
   check_kills(FaultyRun("--threads 2 --set /parts/0/density=500 --tolerance 1e-5", "--obj --quiet"), 600, 0);
 }
-TEST_CASE("I53: a run is resumed to the same files from 500 later system calls", "[long]") {
+TEST_CASE("I53: a run is resumed to the same files from 500 later system calls", "[.extended]") {
   check_kills(FaultyRun("--threads 2 --set /parts/0/density=500 --tolerance 1e-5", "--obj --quiet"), 0, 500);
 }
 TEST_CASE("I53: a run with --force that is killed leaves the old run whole, or continues as the new one") {

@@ -190,8 +190,7 @@ inline void fail_on_unclosable_joint(StepContext& step, const Island& island, do
     if (mode != JointMode::closing && (mode != JointMode::closed || step.joint_policy().projected)) return;
     const JointModel& joint = model.joints()[at(j)];
     const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
-    if (!(gap > kStuckGap * joint.length) ||
-        !(beta * (step.t - std::max(0.0, joint.joint->on())) > patience))
+    if (!(gap > kStuckGap * joint.length) || !(beta * (step.t - std::max(0.0, joint.joint->on())) > patience))
       return;
     const double requested = wanted(model, work.joints, j).norm();
     auto disagrees = [&](int k) {

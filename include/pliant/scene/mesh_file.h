@@ -20,8 +20,8 @@ struct MeshFile {
 /// .off in single precision, each transformed by the nodes of the file that contain it. Polygons are divided
 /// into triangles, and common flaws are removed with a note (scene/mesh/README.md). Memory is proportional to
 /// the size of the file. Throws FileError if the file cannot be read, and std::invalid_argument, with the
-/// place of the fault, if it is not a mesh of triangles and polygons with finite vertices. ObstacleMesh checks
-/// the topology of the result.
+/// place of the fault, if it is not a mesh of triangles and polygons with finite vertices. ObstacleMesh
+/// checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
 /// Reads a mesh from the bytes of a file; `name` is its path, whose ending chooses the format.
 MeshFile read_mesh(const std::filesystem::path& name, std::string bytes);

@@ -29,17 +29,16 @@ PLIANT_INLINE EnergyMonitor::EnergyMonitor(const Model& model) {
 }
 
 PLIANT_INLINE void EnergyMonitor::add(const Ledger& ledger, double t) {
-  const Potentials now{ledger.gravity, ledger.elastic, ledger.local, ledger.springs};
+  const double potential = ledger.energy() - ledger.kinetic;
   if (!started_) {
     start_kinetic_ = ledger.kinetic;
-    start_ = lowest_ = now;
+    start_potential_ = lowest_potential_ = potential;
     started_ = true;
   }
   time_ = std::max(time_, t);
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    lowest_[k] = std::min(lowest_[k], now[k]);
-    largest_potential_ = std::max(largest_potential_, std::abs(now[k]));
-  }
+  lowest_potential_ = std::min(lowest_potential_, potential);
+  for (const double term : {ledger.gravity, ledger.elastic, ledger.local, ledger.springs})
+    largest_term_ = std::max(largest_term_, std::abs(term));
   kinetic_ = std::max(kinetic_, ledger.kinetic);
   work_ = std::max(work_, ledger.work.lpNorm<1>());
   const bool finite = std::isfinite(ledger.energy()) && std::isfinite(ledger.balance);
@@ -47,9 +46,8 @@ PLIANT_INLINE void EnergyMonitor::add(const Ledger& ledger, double t) {
 }
 
 PLIANT_INLINE double EnergyMonitor::movable() const {
-  double sum = start_kinetic_ + work_;
-  for (std::size_t k = 0; k < start_.size(); ++k) sum += start_[k] - lowest_[k];
-  return std::max({sum, lift_, energy_monitor::kRounding * largest_potential_});
+  return std::max({start_kinetic_ + start_potential_ - lowest_potential_ + work_, lift_,
+                   energy_monitor::kRounding * largest_term_});
 }
 
 PLIANT_INLINE double EnergyMonitor::share() const {

@@ -1,16 +1,14 @@
 // The scale of the error of the energy balance: the energy that could move in a simulation.
 #pragma once
 
-#include <array>
-
 #include <pliant/body/ledger.h>
 #include <pliant/body/model.h>
 
 namespace pliant {
 
 /// Compares the error of the energy balance with the energy that could move: the kinetic energy at the start,
-/// plus the potential energies at the start above their lowest values, plus the magnitudes of all works. A
-/// motion without error has at most this kinetic energy. An error that grows hardly changes it.
+/// plus the potential energy at the start above its lowest value, plus the magnitudes of all works. A motion
+/// without error has at most this kinetic energy. An error that grows hardly changes it.
 class EnergyMonitor {
  public:
   explicit EnergyMonitor(const Model& model);
@@ -30,15 +28,12 @@ class EnergyMonitor {
   double max_error() const { return error_; }      ///< largest |Ledger::balance|, J
 
  private:
-  /// Gravity, parameters, local deformation, springs.
-  using Potentials = std::array<double, 4>;
-
   double lift_ = 0;    ///< the energy that lifts every part by a hundredth of its size, J
   double second_ = 0;  ///< sum of the masses times the squares of the sizes, kg m^2
   bool started_ = false;
   double start_kinetic_ = 0, kinetic_ = 0, work_ = 0, error_ = 0, time_ = 0;
-  Potentials start_{}, lowest_{};
-  double largest_potential_ = 0;  ///< largest magnitude of a potential energy, J
+  double start_potential_ = 0, lowest_potential_ = 0;  ///< of the sum of the potential energies, J
+  double largest_term_ = 0;                            ///< largest magnitude of one of them, J
 };
 
 }  // namespace pliant

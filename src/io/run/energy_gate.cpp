@@ -39,8 +39,8 @@ std::string energy_note(const Simulation& simulation, const EnergyMonitor& monit
   const bool fixed_first_order = simulation.tolerance() == 0 && method.order() == 1;
   if (share == 0 || (share <= kReportedEnergyShare && !fixed_first_order)) return {};
   const std::string error = std::string(kNote) + rounded_text(monitor.max_error()) + " J, which is " +
-                            percent(share) + " of the energy that could move (" + rounded_text(monitor.movable()) +
-                            " J). ",
+                            percent(share) + " of the energy that could move (" +
+                            rounded_text(monitor.movable()) + " J). ",
                     order = std::string("The method ") + method.name() + " is of order " +
                             std::to_string(method.order()) + ".";
   if (share <= kReportedEnergyShare) return error + order;

@@ -156,7 +156,6 @@ class RunFolder::Lock {
                           (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
                           ")");
     }
-    ::unlink(path_.c_str());
     ::close(descriptor_);
     const bool no_locks = error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS;
     throw std::system_error(

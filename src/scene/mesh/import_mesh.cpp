@@ -200,8 +200,8 @@ void add_precision_note(RawMesh& mesh) {
   const double rounding = std::numeric_limits<float>::epsilon() * farthest, size = (high - low).maxCoeff();
   if (!(rounding > 1e-6 * size)) return;
   std::ostringstream note;
-  note << "coordinates of this format are read in single precision, which moves vertices by up to " << rounding
-       << " m; OBJ, PLY and STL files keep double precision";
+  note << "coordinates of this format are read in single precision, which moves vertices by up to "
+       << rounding << " m; OBJ, PLY and STL files keep double precision";
   mesh.notes.push_back(note.str());
 }
 

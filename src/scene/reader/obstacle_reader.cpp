@@ -20,7 +20,8 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
       "An immobile triangle mesh or plate.",
       {required("name", name(), "Name that no part, plane or other obstacle has.", "\"bowl\""),
        optional("mesh", text(1),
-                "Surface mesh: a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off, relative to the folder of the scene. "
+                "Surface mesh: a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off, relative to "
+                "the folder of the scene. "
                 "Triangles are counter-clockwise seen from the free side. A body that comes from behind "
                 "passes through an open mesh."),
        optional("half_extents", array(number(above(0), "m"), 2, 2),

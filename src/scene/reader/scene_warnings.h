@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-/// Warns if the sizes of parts differ by more than a factor of a million, and if the camera sees no point of a
-/// part at time 0. root: the whole scene, read without errors.
+/// Warns if the sizes of parts differ by more than a factor of a million, and if the camera sees no point of
+/// a part at time 0. root: the whole scene, read without errors.
 void add_warnings(const Scene& scene, const Reader& root, SceneFaults& faults);
 
 }  // namespace pliant

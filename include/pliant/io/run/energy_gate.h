@@ -12,8 +12,8 @@ namespace pliant {
 /// Largest error of the energy balance without a warning, as a share of the energy that could move
 /// (EnergyMonitor).
 inline constexpr double kReportedEnergyShare = 0.01;
-/// Largest error of the energy balance of a run, as a share of the energy that could move. Above it the steps, and
-/// not the forces, make most of the motion, and the run fails.
+/// Largest error of the energy balance of a run, as a share of the energy that could move. Above it the
+/// steps, and not the forces, make most of the motion, and the run fails.
 inline constexpr double kLargestEnergyShare = 0.5;
 
 /// Throws NumericalFailure if the energies of a simulation are not finite, or if the error of their balance

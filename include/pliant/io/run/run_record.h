@@ -60,8 +60,8 @@ struct RunRecord {
   double max_kinetic = 0;        ///< largest kinetic energy at a recorded state, J
   double movable_energy = 0;     ///< the energy that could move (EnergyMonitor), J
   double energy_share = 0;       ///< largest error of the balance as a share of the energy that could move
-  double max_energy = 0;    ///< largest |total energy| at a recorded state, J; its zero is arbitrary
-  double max_gap = 0;       ///< largest gap of a closed joint at a recorded state, m
+  double max_energy = 0;         ///< largest |total energy| at a recorded state, J; its zero is arbitrary
+  double max_gap = 0;            ///< largest gap of a closed joint at a recorded state, m
   /// Largest ratio of a contact depth to the size of the smaller part, at a recorded state.
   double max_depth = 0;
   double open_gap = 0;                 ///< widest gap of an open joint at the last state, m
