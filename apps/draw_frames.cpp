@@ -52,7 +52,9 @@ class GraphicsCrashes {
 
  private:
   static constexpr std::array<int, 3> kSignals{SIGSEGV, SIGBUS, SIGABRT};
+#ifndef PLIANT_SANITIZED
   std::array<struct sigaction, kSignals.size()> before_{};
+#endif
 };
 
 }  // namespace

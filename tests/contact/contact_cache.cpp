@@ -280,7 +280,9 @@ TEST_CASE("the contact cache works for a part on a soft one with an implicit met
              cold_sweeps = sweeps(cold, 22, clear_cache, 1e-3);
   CAPTURE(warm_sweeps, cold_sweeps);
   CHECK(cold_sweeps >= 22);
-  CHECK(4 * warm_sweeps < cold_sweeps);
+  // A step of soft contact is a whole step and two halves. The second half starts from the cache of the first
+  // half even if the cache of the state is cleared.
+  CHECK(3 * warm_sweeps < 2 * cold_sweeps);
   CHECK((warm.state().q - cold.state().q).lpNorm<Eigen::Infinity>() < 1e-9);
   CHECK(cached_floor_force(warm.state()).z() == Approx(weight(body)).epsilon(1e-2));
   Simulation other(body, "linearly_implicit");

@@ -211,7 +211,8 @@ TEST_CASE("N20: the largest stable step includes the beta damping of every law",
       MultiBody body;
       tumbling(body, law, 0.05);
       Simulation simulation(body, method);
-      const double h = 0.98 * largest_stable_step(simulation), start = simulation.ledger().energy();
+      // The limit is that of small motions about the start, and the motion changes the shape.
+      const double h = 0.9 * largest_stable_step(simulation), start = simulation.ledger().energy();
       CAPTURE(law.name, method, h);
       CHECK_NOTHROW([&] {
         for (int i = 0; i < 100; ++i) simulation.step(h);
