@@ -124,6 +124,7 @@ class ContactStepping {
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
   void include_openings(std::size_t first, double t, double h, State& state) const;
+  double deepest_at_nodes(const State& state, double t);
   void extrapolate(StepContext& step, const State& whole, std::size_t second, const std::vector<int>& parts,
                    const State* start);
   /// Values at the start of a step that may be repeated.

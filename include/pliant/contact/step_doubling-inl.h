@@ -36,6 +36,8 @@ inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
+/// Extrapolation may leave contacts at nodes that overlap by this multiple of RestingContacts::tight_gap.
+inline constexpr double kMaxSoftOverlap = 400;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
@@ -278,6 +280,17 @@ PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t
   }
 }
 
+/// Returns the deepest overlap of a contact at nodes at a state and a time t (s), in units of
+/// RestingContacts::tight_gap; 0 without an overlap.
+PLIANT_INLINE double ContactStepping::deepest_at_nodes(const State& state, double t) {
+  std::vector<Contact> found;
+  meshes_.find(state, t, found);
+  double deepest = 0;
+  for (const Contact& contact : found)
+    deepest = std::max(deepest, -contact.gap / resting_.tight_gap(contact));
+  return deepest;
+}
+
 /// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
 /// end of the whole step. second: number of the first contact of the second half in the record. start: if not
 /// nullptr, the state at the start of the step; the result then stays nearer to the halves where
@@ -312,6 +325,9 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
                  balance_of_whole = of_whole - whole.work.sum() - before,
                  balance = energy_of(state) - (2 * halves.work.sum() - whole.work.sum()) - before;
     share = step_doubling::share_without_gain(balance_of_halves, balance_of_whole, balance);
+    if (share > 0 &&
+        deepest_at_nodes(state, t) > std::max(deepest_at_nodes(halves, t), step_doubling::kMaxSoftOverlap))
+      share = 0;  // a fast node would be moved into the body that it has met
     if (share < 1) move_on(share);
   }
   const double energy = (1 + share) * of_halves - share * of_whole;
