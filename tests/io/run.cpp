@@ -51,8 +51,10 @@ bool run(Scene& scene, const fs::path& folder, const RunSettings& settings = {})
   options.existing = settings.existing;
   options.threads = settings.threads;
   long steps = 0;
-  if (settings.stop_after >= 0) options.stop = [&] { return steps++ >= settings.stop_after; };
+  bool begun = false;  // `stop` is also called while the method is chosen
+  if (settings.stop_after >= 0) options.stop = [&] { return begun && steps++ >= settings.stop_after; };
   Run session(scene, options, silent);
+  begun = true;
   const bool complete = session.simulate();
   session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped,
                  complete ? "" : "by the test");

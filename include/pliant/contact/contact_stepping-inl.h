@@ -163,7 +163,8 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   const Before before{step.state, record_, recorded_, step.counters};
   soft_may_touch_ = false;
   const double length = step_once(method, step, tolerance);
-  if (soft_may_touch_ && length == before.state.h && step.state.q.allFinite() && step.state.v.allFinite())
+  const bool whole = length == before.state.h && step.state.q.allFinite() && step.state.v.allFinite();
+  if (soft_may_touch_ && whole && deepest_at_nodes(before.state, before.state.time()) <= kMaxSoftOverlap)
     extrapolate_soft_step(method, step, before, length, tolerance);
   return length;
 }

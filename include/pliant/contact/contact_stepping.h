@@ -124,6 +124,9 @@ class ContactStepping {
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
   void include_openings(std::size_t first, double t, double h, State& state) const;
+  /// Steps of soft contact are extrapolated if contacts at nodes overlap by at most this multiple of
+  /// RestingContacts::tight_gap, before and after the step. Deeper contacts are being separated.
+  static constexpr double kMaxSoftOverlap = 400;
   double deepest_at_nodes(const State& state, double t);
   void extrapolate(StepContext& step, const State& whole, std::size_t second, const std::vector<int>& parts,
                    const State* start);

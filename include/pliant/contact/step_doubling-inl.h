@@ -36,8 +36,6 @@ inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
-/// Extrapolation may leave contacts at nodes that overlap by this multiple of RestingContacts::tight_gap.
-inline constexpr double kMaxSoftOverlap = 400;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
@@ -325,8 +323,7 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
                  balance_of_whole = of_whole - whole.work.sum() - before,
                  balance = energy_of(state) - (2 * halves.work.sum() - whole.work.sum()) - before;
     share = step_doubling::share_without_gain(balance_of_halves, balance_of_whole, balance);
-    if (share > 0 &&
-        deepest_at_nodes(state, t) > std::max(deepest_at_nodes(halves, t), step_doubling::kMaxSoftOverlap))
+    if (share > 0 && deepest_at_nodes(state, t) > kMaxSoftOverlap)
       share = 0;  // a fast node would be moved into the body that it has met
     if (share < 1) move_on(share);
   }
