@@ -263,8 +263,9 @@ void collect_part(const Evaluation<S>& e, int i) {
   v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
   v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
   if constexpr (std::is_same_v<S, double>)
-    // Joints and limits accelerate the local coordinates too.
-    if (m.local != nullptr && w.a_r != w.local->a_free)
+    // Joints and limits accelerate the local coordinates too. Without them A_inverse is not computed, and a_r
+    // differs from a_free only if it is not a number.
+    if (m.local != nullptr && w.local->A_inverse.cols() == w.a_r.size() && w.a_r != w.local->a_free)
       m.local->push_all(m.joint_points, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
                         v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
 }
