@@ -462,7 +462,7 @@ PLIANT_INLINE void Simulation::record_contact_errors() {
 }
 
 /// Restores the state before the step and throws NumericalFailure, or UnsatisfiableModel if a conflict of
-/// joints is predicted. fault: what is wrong with the state after the step, see failure_report::fault_of().
+/// joints is predicted. fault: the result of failure_report::fault_of() for the state after the step.
 PLIANT_INLINE void Simulation::fail_by(const std::string& fault) {
   const std::string cause = failure_report::cause(dynamics_, last_good_);
   reject_step();

@@ -20,7 +20,7 @@ struct FailedRun {
 /// steps are the largest stable step at the start and fractions of the failed step; the tolerances are
 /// multiples and fractions of the failed tolerance; the last trial is the integrator "auto". Trials take at
 /// most `seconds` of wall time together, and end when stop() returns true. If no trial reaches the end, the
-/// advice says what was tried. No exception of a trial leaves this function.
+/// advice lists the settings of the trials. The function catches all exceptions of the trials.
 std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
                         const std::function<bool()>& stop);
 

@@ -53,7 +53,7 @@ class RunFolder {
   std::filesystem::path operator/(const char* name) const { return folder_ / name; }
   /// Returns whether the folder contains a run that has begun.
   bool has_run() const;
-  /// Returns what was found and mended in the folder, as a text for the user; may be empty.
+  /// Returns a note about the files that this object repaired or removed; empty if there are none.
   const std::string& note() const { return note_; }
 
   /// Creates an empty folder for the files of a new run and returns its path.

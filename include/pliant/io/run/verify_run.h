@@ -13,8 +13,8 @@
 namespace pliant {
 
 struct Verification {
-  std::vector<std::string> checked;  ///< what was checked, one text per kind of file
-  std::vector<std::string> faults;   ///< what is wrong, one text per file; empty if all is right
+  std::vector<std::string> checked;  ///< one text for each kind of file that was checked
+  std::vector<std::string> faults;   ///< one text for each damaged or missing file
 };
 
 /// A run whose files are verified.
