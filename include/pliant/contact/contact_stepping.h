@@ -124,12 +124,16 @@ class ContactStepping {
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;
   void include_openings(std::size_t first, double t, double h, State& state) const;
-  /// Steps of soft contact are extrapolated if contacts at nodes overlap by at most this multiple of
-  /// RestingContacts::tight_gap, before and after the step. Deeper contacts are being separated.
-  static constexpr double kMaxSoftOverlap = 400;
-  double deepest_at_nodes(const State& state, double t);
-  void extrapolate(StepContext& step, const State& whole, std::size_t second, const std::vector<int>& parts,
-                   const State* start);
+  /// What two halves are extrapolated from.
+  struct Extrapolation {
+    State coarse;  ///< the state after the whole step; nodes may have the values of the halves
+    double share;  ///< 1, or less for a result nearer to the halves
+  };
+  State extrapolated(const State& halves, const Extrapolation& from, const std::vector<int>& parts) const;
+  void extrapolate(StepContext& step, const State& whole, const Extrapolation& from, std::size_t second,
+                   const std::vector<int>& parts);
+  Extrapolation soft_extrapolation(double t, const State& start, const State& halves, const State& whole,
+                                   const std::vector<int>& parts);
   /// Values at the start of a step that may be repeated.
   struct Before {
     State state;

@@ -39,19 +39,6 @@ inline constexpr double kMaxLeftGap = 1000;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
-/// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
-/// step with the share s is b(s) = halves + s (halves - whole) + s (1 + s) / 2 excess, if energies are
-/// quadratic. halves, whole: balances of both results, J, negative if they lose energy. extrapolated: b(1),
-/// J.
-inline double share_without_gain(double halves, double whole, double extrapolated) {
-  if (!(extrapolated > 0)) return 1;
-  if (!(halves < 0)) return extrapolated <= halves ? 1 : 0;
-  const double half_excess = 0.5 * (extrapolated - 2 * halves + whole), slope = halves - whole + half_excess;
-  if (!(half_excess > 0)) return std::clamp(-halves / slope, 0.0, 1.0);
-  return std::clamp((std::sqrt(slope * slope - 4 * half_excess * halves) - slope) / (2 * half_excess), 0.0,
-                    1.0);
-}
-
 /// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more
 /// than max_speed, m/s. dv: differences of the velocities of all parts.
 inline bool has_jump(const Model& model, const VecX<double>& dv, double max_speed) {
@@ -129,58 +116,10 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   if (agreed && !whole.has_event && error <= 1) {
     StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
                        halves.length);
-    extrapolate(at_end, whole.state, halves.first_contacts, parts_touched(model, record_.contacts), nullptr);
+    extrapolate(at_end, whole.state, {whole.state, 1}, halves.first_contacts,
+                parts_touched(model, record_.contacts));
   }
   return {error, order, halves.length};
-}
-
-/// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). Such
-/// a step of linearly_implicit is one of linearly implicit Euler, which damps oscillations by a rate of half
-/// of omega^2 h. The extrapolation has second order, and damps by a rate of order h^3. Nodes whose contacts
-/// differ between both results are light, so that their errors are small. If rigid contacts or modes differ,
-/// the result is that of the halves; if the halves fail, it is that of the whole step.
-PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, StepContext& step,
-                                                          const Before& before, double length,
-                                                          double tolerance) {
-  const Model& model = dynamics_.model();
-  State& state = step.state;
-  const auto rigid_contacts = [&](std::size_t from, std::size_t to) {
-    return std::count_if(record_.contacts.begin() + static_cast<std::ptrdiff_t>(from),
-                         record_.contacts.begin() + static_cast<std::ptrdiff_t>(to),
-                         [](const Contact& c) { return !c.a.at_nodes() && !c.b.at_nodes(); });
-  };
-  const std::size_t first = before.record.contacts.size();
-  const auto rigid = rigid_contacts(first, record_.contacts.size());
-  const Whole whole{state, length, resting_at_start_, record_.contacts.size() - first, false};
-  const ContactRecord record = record_;
-  const double recorded = recorded_;
-  state = before.state;
-  record_ = before.record;
-  recorded_ = before.recorded;
-  step.counters.impacts = before.counters.impacts;
-  step.counters.sequential_impacts = before.counters.sequential_impacts;
-  Halves halves;
-  try {
-    halves = step_halves(method, step, whole, before.state, tolerance);
-  } catch (const StepFailure&) {
-    halves.finite = false;
-  }
-  if (!halves.finite || halves.length != length) {
-    state = whole.state;
-    record_ = record;
-    recorded_ = recorded;
-    return;
-  }
-  if (state.at_limit != whole.state.at_limit || state.joints != whole.state.joints ||
-      !same_sleepers(state.at_rest, whole.state.at_rest) ||
-      rigid_contacts(halves.first_contacts, record_.contacts.size()) != rigid)
-    return;
-  std::vector<int> parts;
-  for (std::size_t i = 0; i < model.parts().size(); ++i)
-    if (model.parts()[i].q0 >= 0 && !(state.at_rest.size() > i && state.at_rest[i] < 0))
-      parts.push_back(static_cast<int>(i));
-  StepContext at_end(dynamics_, state, step.work, step.counters, before.state.time() + length, length);
-  extrapolate(at_end, whole.state, halves.first_contacts, parts, &before.state);
 }
 
 /// Repeats the step from `initial` as two halves; step.state is the state at their end.
@@ -278,61 +217,40 @@ PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t
   }
 }
 
-/// Returns the deepest overlap of a contact at nodes at a state and a time t (s), in units of
-/// RestingContacts::tight_gap; 0 without an overlap.
-PLIANT_INLINE double ContactStepping::deepest_at_nodes(const State& state, double t) {
-  std::vector<Contact> found;
-  meshes_.find(state, t, found);
-  double deepest = 0;
-  for (const Contact& contact : found)
-    deepest = std::max(deepest, -contact.gap / resting_.tight_gap(contact));
-  return deepest;
+/// Returns a copy of `halves`, the state at the end of the two halves. In it the coordinates and velocities
+/// of some parts are halves + share (halves - coarse).
+PLIANT_INLINE State ContactStepping::extrapolated(const State& halves, const Extrapolation& from,
+                                                  const std::vector<int>& parts) const {
+  State state = halves;
+  for (const int i : parts) {
+    const PartModel& m = dynamics_.model().parts()[at(i)];
+    const auto move_on = [&](auto& x, const auto& coarse, int first, int n) {
+      x.segment(first, n) += from.share * (x.segment(first, n) - coarse.segment(first, n));
+    };
+    move_on(state.q, from.coarse.q, m.q0, m.n_q());
+    move_on(state.v, from.coarse.v, m.v0, m.n_v());
+  }
+  normalise_rotations(dynamics_.model(), state.q);
+  return state;
 }
 
 /// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
-/// end of the whole step. second: number of the first contact of the second half in the record. start: if not
-/// nullptr, the state at the start of the step; the result then stays nearer to the halves where
-/// extrapolation would add energy, for example because a node is in contact in one of both results only.
-PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second,
-                                                const std::vector<int>& parts, const State* start) {
-  const Model& model = dynamics_.model();
+/// end of the whole step. from: what extrapolated() gets. second: number of the first contact of the second
+/// half in the record.
+PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole,
+                                                const Extrapolation& from, std::size_t second,
+                                                const std::vector<int>& parts) {
   State& state = step.state;
-  const double t = step.t;
-  const State halves = state;
-  auto energy_of = [&](const State& at_time) {
-    return dynamics_.energy(t, at_time.q, at_time.v, parts, scratch_);
+  auto energy_of = [&](const State& at_end) {
+    return dynamics_.energy(step.t, at_end.q, at_end.v, parts, scratch_);
   };
-  auto move_on = [&](double share) {
-    for (const int i : parts) {
-      const PartModel& m = model.parts()[at(i)];
-      const auto add = [&](auto& x, const auto& fine, const auto& coarse, int first, int n) {
-        x.segment(first, n) =
-            fine.segment(first, n) + share * (fine.segment(first, n) - coarse.segment(first, n));
-      };
-      add(state.q, halves.q, whole.q, m.q0, m.n_q());
-      add(state.v, halves.v, whole.v, m.v0, m.n_v());
-    }
-    normalise_rotations(model, state.q);
-  };
-  const double of_halves = energy_of(halves), of_whole = energy_of(whole);
-  double share = 1;
-  move_on(share);
-  if (start != nullptr) {
-    const double before = energy_of(*start) - start->work.sum(),
-                 balance_of_halves = of_halves - halves.work.sum() - before,
-                 balance_of_whole = of_whole - whole.work.sum() - before,
-                 balance = energy_of(state) - (2 * halves.work.sum() - whole.work.sum()) - before;
-    share = step_doubling::share_without_gain(balance_of_halves, balance_of_whole, balance);
-    if (share > 0 && deepest_at_nodes(state, t) > kMaxSoftOverlap)
-      share = 0;  // a fast node would be moved into the body that it has met
-    if (share < 1) move_on(share);
-  }
-  const double energy = (1 + share) * of_halves - share * of_whole;
-  state.work += share * (halves.work - whole.work);
+  const double energy = (1 + from.share) * energy_of(state) - from.share * energy_of(whole);
+  state = extrapolated(state, from, parts);
+  state.work += from.share * (state.work - whole.work);
   const double work_before = state.work.sum();
   resolution_.reconcile(step, parts);
   project_limits(step);
-  include_openings(second, t, step.h, state);
+  include_openings(second, step.t, step.h, state);
   // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
   state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - work_before);
 }
