@@ -340,42 +340,46 @@ TEST_CASE(
 TEST_CASE(
     "balloons in frictional contact with each other or a rigid part conserve linear momentum to rounding",
     "[contact]") {
-  for (const bool rigid : {false, true}) {
-    std::vector<double> angular;
-    for (const double h : {4e-4, 2e-4}) {
-      MultiBody body;
-      body.gravity.setZero();
-      body.contact.active = true;
-      for (const char* name : {"left", "right"}) {
-        Part& part = test::add(body, name, "ellipsoid", {}, 1);
-        part.make_shell().rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
-        const bool left = std::string(name) == "left";
-        part.place(left ? Vec3<double>(-0.12, 0.01, 0) : Vec3<double>(0.12, -0.02, 0.02));
-        part.velocity({left ? 0.5 : -0.5, 0, 0}, left ? Vec3<double>(0, 3, 0) : Vec3<double>(0, 0, -5));
-        if (rigid && !left) continue;
-        LocalSettings settings;
-        settings.resolution = 2;
-        settings.energies = {local_law("neo_hookean_membrane", {2e4, 0.4, 1e-3}),
-                             local_law("pressure", {20})};
-        part.deform_locally(settings);
+  for (const char* method : {"semi_implicit_euler", "linearly_implicit"})
+    for (const bool rigid : {false, true}) {
+      std::vector<double> angular;
+      for (const double h : {4e-4, 2e-4}) {
+        MultiBody body;
+        body.gravity.setZero();
+        body.contact.active = true;
+        for (const char* name : {"left", "right"}) {
+          Part& part = test::add(body, name, "ellipsoid", {}, 1);
+          part.make_shell().rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
+          const bool left = std::string(name) == "left";
+          part.place(left ? Vec3<double>(-0.12, 0.01, 0) : Vec3<double>(0.12, -0.02, 0.02));
+          part.velocity({left ? 0.5 : -0.5, 0, 0}, left ? Vec3<double>(0, 3, 0) : Vec3<double>(0, 0, -5));
+          if (rigid && !left) continue;
+          LocalSettings settings;
+          settings.resolution = 2;
+          settings.energies = {local_law("neo_hookean_membrane", {2e4, 0.4, 1e-3}),
+                               local_law("pressure", {20})};
+          part.deform_locally(settings);
+        }
+        Simulation simulation(body, method);
+        const Ledger before = simulation.ledger();
+        const double scale = body.parts()[0]->total_mass() * 0.5;
+        bool met = false;
+        while (simulation.time() < 0.2) {
+          simulation.step(h);
+          met = met || !simulation.contact()->contacts().empty();
+        }
+        REQUIRE(met);
+        const Ledger after = simulation.ledger();
+        CHECK((after.momentum - before.momentum).norm() < 1e-13 * scale);
+        angular.push_back((after.angular_momentum - before.angular_momentum).norm() / (0.1 * scale));
       }
-      Simulation simulation(body, "semi_implicit_euler");
-      const Ledger before = simulation.ledger();
-      const double scale = body.parts()[0]->total_mass() * 0.5;
-      bool met = false;
-      while (simulation.time() < 0.2) {
-        simulation.step(h);
-        met = met || !simulation.contact()->contacts().empty();
-      }
-      REQUIRE(met);
-      const Ledger after = simulation.ledger();
-      CHECK((after.momentum - before.momentum).norm() < 1e-13 * scale);
-      angular.push_back((after.angular_momentum - before.angular_momentum).norm() / (0.1 * scale));
+      CAPTURE(method, rigid, angular);
+      // Steps of linearly_implicit are extrapolated: their errors are small, and have no order at these
+      // steps.
+      const bool is_extrapolated = std::string(method) == "linearly_implicit";
+      if (!is_extrapolated) CHECK(test::observed_order(angular) > 0.8);
+      CHECK(angular.back() < (is_extrapolated ? 1e-4 : 2e-3));
     }
-    CAPTURE(rigid, angular);
-    CHECK(test::observed_order(angular) > 0.8);
-    CHECK(angular.back() < 2e-3);
-  }
 }
 
 }  // namespace blows_test

@@ -164,7 +164,8 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
   soft_may_touch_ = false;
   const double length = step_once(method, step, tolerance);
   const bool whole = length == before.state.h && step.state.q.allFinite() && step.state.v.allFinite();
-  if (soft_may_touch_ && whole) extrapolate_soft_step(method, step, before, length, tolerance);
+  if (soft_may_touch_ && whole && !has_deep_nodes(before.state))
+    extrapolate_soft_step(method, step, before, length, tolerance);
   return length;
 }
 

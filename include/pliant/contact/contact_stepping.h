@@ -132,6 +132,7 @@ class ContactStepping {
   State extrapolated(const State& halves, const Extrapolation& from, const std::vector<int>& parts) const;
   void extrapolate(StepContext& step, const State& whole, const Extrapolation& from, std::size_t second,
                    const std::vector<int>& parts);
+  bool has_deep_nodes(const State& state);
   Extrapolation soft_extrapolation(double t, const State& start, const State& halves, const State& whole,
                                    const std::vector<int>& parts);
   /// Values at the start of a step that may be repeated.

@@ -17,6 +17,9 @@ namespace soft_contact {
 
 /// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation.
 inline constexpr double kMaxOverlap = 400;
+/// A step that begins with a deeper contact at nodes, in the same unit, separates bodies, and is not
+/// repeated. Resolutions leave 0.8 of it.
+inline constexpr double kMaxOverlapAtStart = 1000;
 /// Largest number of rounds that look for nodes that keep the motion of the halves.
 inline constexpr int kMaxRounds = 3;
 
@@ -59,9 +62,8 @@ inline void copy_nodes(const Model& model, const ContactSide& side, const State&
   const int n_nodes = m.n_d() / 3;
   for (const int node : side.node)
     for (int axis = 0; node >= 0 && axis < 3; ++axis) {
-      const int k = m.n_s + axis * n_nodes + node;
-      to.q[m.q0 + 7 + k] = from.q[m.q0 + 7 + k];
-      to.v[m.v0 + 6 + k] = from.v[m.v0 + 6 + k];
+      const int k = m.q0 + 7 + m.n_s + axis * n_nodes + node;
+      to.q[k] = from.q[k];
     }
 }
 
@@ -117,8 +119,17 @@ PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, St
               halves.first_contacts, parts);
 }
 
+/// Returns whether a state has a contact at nodes that is deeper than soft_contact::kMaxOverlapAtStart.
+PLIANT_INLINE bool ContactStepping::has_deep_nodes(const State& state) {
+  std::vector<Contact> found;
+  meshes_.find(state, state.time(), found);
+  return std::any_of(found.begin(), found.end(), [&](const Contact& contact) {
+    return -contact.gap > soft_contact::kMaxOverlapAtStart * resting_.tight_gap(contact);
+  });
+}
+
 /// Chooses what a step of soft contact is extrapolated from. A node that extrapolation would move into a body
-/// keeps the motion of the halves: it met the body in one of both results only. The share is below 1 where
+/// keeps the position of the halves: it met the body in one of both results only. The share is below 1 where
 /// extrapolation would add energy. start, halves, whole: states at the start of the step, and at its end
 /// after the two halves and after the whole step.
 PLIANT_INLINE ContactStepping::Extrapolation ContactStepping::soft_extrapolation(

@@ -248,7 +248,15 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
   state = extrapolated(state, from, parts);
   state.work += from.share * (state.work - whole.work);
   const double work_before = state.work.sum();
-  resolution_.reconcile(step, parts);
+  // The linear momenta m c_dot are those of the extrapolation. Nodes that keep positions of the halves move
+  // the centre of mass, and with it, in a part that turns, the frame's velocity.
+  const VecX<double> extrapolated_v = state.v;
+  project_frames(step, parts);
+  for (const int i : parts) {
+    const int v0 = dynamics_.model().parts()[at(i)].v0;
+    state.v.segment<3>(v0) = extrapolated_v.segment<3>(v0);
+  }
+  project_joints(step);
   project_limits(step);
   include_openings(second, step.t, step.h, state);
   // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
