@@ -111,6 +111,39 @@ TEST_CASE("an error of the energy balance above 1 % is reported, and ends a stri
   CHECK(place.pliant("run top.json -o out --force --strict").code == 0);
 }
 
+TEST_CASE("an error of the energy balance above 1 % ends a run of order 4 with code 6") {
+  const TestFolder place;
+  set_bytes(place.folder / "fast.json", R"({
+    "time": {"end": 4, "step": 0.07, "integrator": "rk4"}, "gravity": [0, 0, 0],
+    "parts": [{"name": "top", "shape": "ellipsoid", "parameters": {"a1": 0.1, "a2": 0.2, "a3": 0.3},
+               "angular_velocity": [15, 1, 10]}]
+  })");
+  const std::string spinning = "run fast.json -o out --force";
+  const Result inaccurate = place.pliant(spinning);
+  CHECK(inaccurate.code == 6);
+  CHECK(has(inaccurate.err, "warning: the largest error of the energy balance is "));
+  CHECK(place.record("out")["status"] == "complete");
+  CHECK(place.pliant(spinning + " --no-strict").code == 0);
+}
+
+TEST_CASE("methods with dense matrices refuse a part of more than 1000 velocities before the run") {
+  const TestFolder place;
+  for (const std::string method : {"esdirk", "implicit_midpoint"}) {
+    set_bytes(place.folder / "soft.json", R"({
+      "time": {"end": 1, "step": 0.01, "integrator": ")" +
+                                              method + R"("},
+      "parts": [{"name": "jelly", "shape": "sphere", "parameters": {"r": 0.1},
+                 "local": {"resolution": 8, "laws": [{"type": "neo_hookean", "E": 1e4, "nu": 0.3}]}}]
+    })");
+    const Result result = place.pliant("run soft.json -o out");
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(has(result.err, "integrator '" + method + "' has a dense matrix: part 'jelly' has "));
+    CHECK(has(result.err, "expected at most 1000. Use 'linearly_implicit' or 'auto'"));
+    CHECK(!std::filesystem::exists(place.folder / "out"));
+  }
+}
+
 TEST_CASE("a part below the drawn ground, an angle above a turn and sizes far apart are reported") {
   const TestFolder place;
   set_bytes(place.folder / "odd.json", R"({

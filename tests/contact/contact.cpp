@@ -131,6 +131,26 @@ TEST_CASE("a resting part stays at rest while another part bounces", "[contact]"
   CHECK((simulation.state().q.head<3>() - 0.1 * n).norm() < 1e-12);
 }
 
+TEST_CASE("a part that rests with a parameter at its limit takes few steps with a tolerance", "[contact]") {
+  // The weight is 2.1 times the elastic force at the limit. In a motion without contact this force would move
+  // the parameter away from its limit.
+  for (const char* method : {"esdirk", "dop853"}) {
+    MultiBody body;
+    Part& part = test::add(body, "ball", "ellipsoid", {}, 100);
+    part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place({0, 0, 0.12});
+    part.stiffness({{"a3", 200}}).limits("a3", {0.09, 0.11});
+    body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+    Simulation simulation(body, method, 1, 1e-3);
+    int steps = 0;
+    for (; simulation.time() < 0.5; ++steps) simulation.step_up_to(0.5);
+    CAPTURE(method, steps);
+    CHECK(steps < 800);
+    CHECK(simulation.state().q[2] == Approx(0.09).margin(1e-6));
+    CHECK(simulation.state().q[7] == Approx(0.09).margin(1e-6));
+    CHECK(simulation.ledger().kinetic < 1e-9);
+  }
+}
+
 TEST_CASE("works of limits and of contact are each recorded once", "[contact]") {
   std::vector<double> balance;
   for (const double h : {4e-3, 2e-3, 1e-3}) {

@@ -28,10 +28,24 @@ inline Mat3<double> axes(const Contact& contact) {
   return axes;
 }
 
+/// A parameter is at a limit if its distance is at most this share of the size of the part, or of 1 for a
+/// parameter that is no length.
+inline constexpr double kAtLimit = 1e-6;
+
+/// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
+inline int near_limit(const PartModel& m, int k, const State& state) {
+  const int mode = state.at_limit[at(m.limit0 + k)];
+  if (mode != 0) return mode;
+  const bool length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+  const double distance = kAtLimit * (length ? m.part->size() : 1), value = state.q[m.q0 + 7 + k];
+  if (value - m.limits[at(k)].min <= distance) return -1;
+  return m.limits[at(k)].max - value <= distance ? 1 : 0;
+}
+
 }  // namespace contact_problem
 
 PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
-                                             const std::vector<Contact>& contacts)
+                                             const std::vector<Contact>& contacts, const State* start)
     : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model, work) {
   for (const Contact& contact : contacts) {
     system_.add_contact(contact.friction);
@@ -39,7 +53,7 @@ PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& st
     if (contact.b.part >= 0) add_side(contact.b, contact, -1);
     complete();
   }
-  add_limits();
+  add_limits(start);
   add_strings();
   before_ = movers_.velocities(state, work);
   after_ = before_;
@@ -103,9 +117,10 @@ PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3
   }
 }
 
-/// Adds a one-sided row for each parameter of the movers that is at a limit: the parameter must not pass the
-/// limit. Parameters without inertia, and those of parts that move by nodes, get no row.
-PLIANT_INLINE void ContactProblem::add_limits() {
+/// Adds a one-sided row for each parameter of the movers that is at a limit, now or at the start of the
+/// motion: the parameter must not pass the limit. Parameters without inertia, and those of parts that move by
+/// nodes, get no row.
+PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
   const std::vector<Mover> movers = movers_.all();
   for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
     const Mover& mover = movers[at(i)];
@@ -114,7 +129,8 @@ PLIANT_INLINE void ContactProblem::add_limits() {
     for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
-        const int mode = state_.at_limit[at(m.limit0 + k)];
+        int mode = state_.at_limit[at(m.limit0 + k)];
+        if (mode == 0 && start != nullptr) mode = contact_problem::near_limit(m, k, *start);
         if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 ||
             work_.parts[at(part)].without_inertia(6 + k))
           continue;

@@ -23,9 +23,10 @@ struct ContactSolution {
 class ContactProblem {
  public:
   /// work: as evaluate_touched() left it for these contacts. state, contacts and work must outlive this
-  /// object.
+  /// object. start: if not nullptr, the state at the start of the motion. Parameters that were at a limit
+  /// then are so now: they have left it in the motion only because the contacts did not act.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
-                 const std::vector<Contact>& contacts);
+                 const std::vector<Contact>& contacts, const State* start = nullptr);
 
   /// Computes the impulses of contacts, limits and strings. Each contact rebounds with Contact::rebound.
   /// limit_time: the time since the impulses on limits and strings acted, s, like Contact::since of a
@@ -85,7 +86,7 @@ class ContactProblem {
   Side make_side(int part);
   void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
   void add_side(const ContactSide& side, const Contact& contact, double sign);
-  void add_limits();
+  void add_limits(const State* start);
   void add_strings();
   void complete();
   void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;

@@ -266,7 +266,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   const double work_before = state.work.sum();
   evaluate_touched(dynamics_, state, t, contacts, step.work);
   measure_travel(state, h, contacts);
-  ContactProblem problem(dynamics_.model(), state, step.work, contacts);
+  ContactProblem problem(dynamics_.model(), state, step.work, contacts, &before);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
   // follows a prescribed path, or if the impulse acts at one instant. Then Work::contact, or Work::anchors

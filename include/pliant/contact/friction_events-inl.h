@@ -221,7 +221,7 @@ PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, const std::ve
   if (trial.contacts.empty()) return;
   time_impacts(finder_, free, state, trial.contacts);
   evaluate_touched(dynamics_, state, free.end(), trial.contacts, work_);
-  ContactProblem problem(dynamics_.model(), state, work_, trial.contacts);
+  ContactProblem problem(dynamics_.model(), state, work_, trial.contacts, &motion.free.before);
   double fastest = 0;
   for (const Vec3<double>& u : problem.velocities(state)) fastest = std::max(fastest, u.norm());
   resolution_.warm_start(motion.free.before, free.end(), free.h, trial.contacts, problem);

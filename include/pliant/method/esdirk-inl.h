@@ -100,6 +100,10 @@ PLIANT_INLINE void Esdirk::step(StepContext& step) {
   project(step);
 }
 
+PLIANT_INLINE Eigen::Index Esdirk::max_velocities() const {
+  return StageSolver::kMaxVelocities;
+}
+
 PLIANT_INLINE double Esdirk::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
   return linear_growth(K, D, h, [](const std::complex<double>& z) {
     std::complex<double> rate[esdirk::kStages] = {z}, y = 1;

@@ -24,6 +24,7 @@ class Esdirk final : public Integrator {
   /// Throws NumericalFailure if the iteration of a stage does not converge, or if a matrix would be too large
   /// (StageSolver::solve).
   void step(StepContext& step) override;
+  Eigen::Index max_velocities() const override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:

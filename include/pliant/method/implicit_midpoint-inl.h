@@ -52,6 +52,10 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   project(step);
 }
 
+PLIANT_INLINE Eigen::Index ImplicitMidpoint::max_velocities() const {
+  return StageSolver::kMaxVelocities;
+}
+
 PLIANT_INLINE double ImplicitMidpoint::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
   return linear_growth(K, D, h,
                        [](const std::complex<double>& z) { return (1. + 0.5 * z) / (1. - 0.5 * z); });

@@ -21,6 +21,7 @@ class ImplicitMidpoint final : public Integrator {
   /// Throws NumericalFailure if the iteration of the step does not converge, or if a matrix would be too
   /// large (StageSolver::solve).
   void step(StepContext& step) override;
+  Eigen::Index max_velocities() const override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:

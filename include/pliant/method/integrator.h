@@ -2,6 +2,7 @@
 // lists the methods and explains how to add one.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,6 +36,8 @@ class Integrator {
   /// replacement is the response of the part to impulses over the last step (LocalResponse). If the flag is
   /// false, restores M^-1, which an evaluation needs. work: the evaluation at the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
+  /// Returns the largest number of velocities of one part for which the method can solve its equations.
+  virtual Eigen::Index max_velocities() const { return std::numeric_limits<Eigen::Index>::max(); }
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
 

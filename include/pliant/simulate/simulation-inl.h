@@ -124,10 +124,17 @@ PLIANT_INLINE Simulation::Simulation(const Simulation& whole, const std::vector<
 
 PLIANT_INLINE Simulation::~Simulation() = default;
 
-/// Sets the method. Throws std::invalid_argument if a tolerance is given and the method has no error
-/// estimate.
+/// Sets the method. Throws std::invalid_argument if a part has too many velocities for the method, or if a
+/// tolerance is given and the method has no error estimate.
 PLIANT_INLINE void Simulation::set_method(std::unique_ptr<Integrator> method) {
   integrator_ = std::move(method);
+  for (const PartModel& m : model_.parts())
+    if (m.q0 >= 0 && m.n_v() > integrator_->max_velocities())
+      throw std::invalid_argument("integrator '" + std::string(integrator_->name()) +
+                                  "' has a dense matrix: part '" + m.part->name() + "' has " +
+                                  std::to_string(m.n_v()) + " velocities; expected at most " +
+                                  std::to_string(integrator_->max_velocities()) +
+                                  ". Use 'linearly_implicit' or 'auto', or a lower resolution of the part");
   if (!scale_) return;
   integrator_->measure(&*scale_);
   if (integrator_->error_order() > 0) return;

@@ -33,11 +33,15 @@ void require_energy_balance(const Simulation& simulation, const EnergyMonitor& m
   throw NumericalFailure(message.str(), simulation.time());
 }
 
+bool is_of_first_order(const Simulation& simulation) {
+  return simulation.tolerance() == 0 && simulation.integrator().order() == 1;
+}
+
 std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor) {
   const Integrator& method = simulation.integrator();
   const double share = monitor.share();
-  const bool fixed_first_order = simulation.tolerance() == 0 && method.order() == 1;
-  if (share == 0 || (share <= kReportedEnergyShare && !fixed_first_order)) return {};
+  const bool first_order = is_of_first_order(simulation);
+  if (share == 0 || (share <= kReportedEnergyShare && !first_order)) return {};
   const std::string error = std::string(kNote) + rounded_text(monitor.max_error()) + " J, which is " +
                             percent(share) + " of the energy that could move (" +
                             rounded_text(monitor.movable()) + " J). ",
@@ -49,8 +53,8 @@ std::string energy_note(const Simulation& simulation, const EnergyMonitor& monit
     return warning + "Choose a smaller tolerance than " + rounded_text(simulation.tolerance()) + ".";
   const double h = simulation.state().h;
   return warning + order + " Choose " +
-         (fixed_first_order ? "a step of about " + rounded_text(h * kReportedEnergyShare / share, 2)
-                            : "a smaller step than " + rounded_text(h)) +
+         (first_order ? "a step of about " + rounded_text(h * kReportedEnergyShare / share, 2)
+                      : "a smaller step than " + rounded_text(h)) +
          " s, or \"integrator\": \"auto\" with a tolerance.";
 }
 

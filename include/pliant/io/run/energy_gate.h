@@ -21,6 +21,9 @@ inline constexpr double kLargestEnergyShare = 0.5;
 /// since the state `before`. before: the last recorded state. monitor: has the ledger of the present state.
 void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before);
 
+/// Returns whether a simulation has steps of fixed length and a method of order 1. Its errors are large in
+/// most runs, and are reported in all.
+bool is_of_first_order(const Simulation& simulation);
 /// Returns a note about the largest error of the balance of a run, a warning above kReportedEnergyShare. The
 /// text is empty if nothing moved and, below kReportedEnergyShare, for methods of higher order.
 std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor);

@@ -35,8 +35,6 @@ inline constexpr double kRounding = 1e-12;
 /// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
 /// lengths and local coordinates, 1 for angles and other parameters.
 inline constexpr double kDifference = 1e-7;
-/// Largest number of velocities of a cluster, whose matrix is dense.
-inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
 /// The iteration has converged if the last change and the expected remaining change are at most this, in
 /// tolerances.
 inline constexpr double kConverged = 0.02;
@@ -217,11 +215,11 @@ PLIANT_INLINE void StageSolver::damp(VecX<double>& q_error, VecX<double>& v_erro
 PLIANT_INLINE void StageSolver::allocate_matrices(double t) {
   for (Cluster& cluster : clusters_) {
     const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
-    if (n > stage_solver::kMaxClusterVelocities) {
+    if (n > kMaxVelocities) {
       std::ostringstream message;
       message << "part '" << model_.parts()[at(cluster.parts.front())].part->name()
               << "' and the parts that joints, springs or torques connect to it have stiff motion and " << n
-              << " velocities; expected at most " << stage_solver::kMaxClusterVelocities
+              << " velocities; expected at most " << kMaxVelocities
               << " for this method: use linearly_implicit or smaller steps";
       throw NumericalFailure(message.str(), t);
     }

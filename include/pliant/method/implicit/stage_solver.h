@@ -20,6 +20,9 @@ namespace pliant {
 
 class StageSolver {
  public:
+  /// Largest number of velocities of a cluster, whose matrix is dense.
+  static constexpr Eigen::Index kMaxVelocities = 1000;
+
   explicit StageSolver(const Model& model);
 
   /// Prepares the stages of a step from the state of the context. The context and the scale must outlive the
