@@ -79,7 +79,7 @@ void print_estimate(pliant::Scene& scene) {
               << " s of computation";
   const pliant::Model& model = simulation.model();
   const std::size_t numbers = 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) +
-                              pliant::mode_columns_of(model, simulation.clusters() != nullptr).size();
+                              pliant::mode_count(model, simulation.clusters() != nullptr);
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
             << (model.body().contact.active ? "at least " : "")
             << pliant::rounded_text(

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include <pliant/body/advance.h>
 #include <pliant/body/dynamics.h>
-#include <pliant/io/format/number_text.h>
-#include <pliant/io/format/whole_file.h>
+#include <pliant/io/layout.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
 #include <pliant/method/step_path.h>
@@ -21,45 +17,6 @@
 
 namespace pliant {
 namespace {
-
-int mode_count(const Model& model, bool in_clusters) {
-  return static_cast<int>(mode_columns_of(model, in_clusters).size());
-}
-
-// Throws RecordingMismatch if the column names of a table in layout.json differ from those of the model.
-void compare_columns(const nlohmann::json& layout, const char* table, int count,
-                     const std::filesystem::path& file, const std::function<std::string(int)>& name) {
-  const nlohmann::json& columns = layout.at("tables").at(table);
-  for (int i = 0; i < std::min(count, static_cast<int>(columns.size())); ++i) {
-    const std::string recorded = columns.at(static_cast<std::size_t>(i)).at("name");
-    if (recorded != name(i))
-      throw RecordingMismatch(file.string() + " was recorded from another scene: column " +
-                              std::to_string(i) + " of " + table + " is " + recorded +
-                              ", and in this scene " + name(i));
-  }
-  if (static_cast<int>(columns.size()) != count)
-    throw RecordingMismatch(file.string() + " was recorded from another scene: " + table + " has " +
-                            std::to_string(columns.size()) + " columns, and this scene needs " +
-                            std::to_string(count));
-}
-
-void compare_layout(const std::filesystem::path& file, const Model& model) {
-  if (!std::filesystem::exists(file))
-    throw RecordingMismatch("there is no recording: " + file.string() + " is missing");
-  const std::string text = read_whole_file(file);
-  try {
-    const nlohmann::json layout = nlohmann::json::parse(text);
-    if (layout.at("version") != kRecordingVersion)
-      throw RecordingMismatch(file.string() + " has version " + layout.at("version").dump() + ", expected " +
-                              std::to_string(kRecordingVersion));
-    compare_columns(layout, kCoordinatesFile, model.n_q(), file,
-                    [&](int i) { return model.coordinate_name(i); });
-    compare_columns(layout, kVelocitiesFile, model.n_v(), file,
-                    [&](int i) { return model.velocity_name(i); });
-  } catch (const nlohmann::json::exception& fault) {
-    throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
-  }
-}
 
 NpyReader open_table(const std::filesystem::path& path, int columns) {
   try {
@@ -80,14 +37,14 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
 /// Opens modes.npy, with or without columns for clusters.
 NpyReader open_modes(const std::filesystem::path& folder, const Model& model) {
   const std::filesystem::path path = folder / kModesFile;
-  const int in_clusters = mode_count(model, true);
+  const int in_clusters = static_cast<int>(mode_count(model, true));
   try {
     NpyReader reader(path);
     if (model.forms_clusters() && reader.columns() == in_clusters) return reader;
   } catch (const std::runtime_error&) {
     // open_table() reports the fault
   }
-  return open_table(path, mode_count(model, false));
+  return open_table(path, static_cast<int>(mode_count(model, false)));
 }
 
 bool has_contact_cache(const Model& model) {
@@ -143,7 +100,8 @@ RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, con
   return {{NpyWriter::create(folder / kTimesFile, kNpyVector),
            NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
            NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-           NpyWriter::create(folder / kModesFile, mode_count(model, in_clusters)), std::move(contact_cache)},
+           NpyWriter::create(folder / kModesFile, static_cast<int>(mode_count(model, in_clusters))),
+           std::move(contact_cache)},
           ChecksumWriter::create(folder / kChecksumsFile, checked_tables(model))};
 }
 
@@ -202,8 +160,7 @@ std::size_t RecordingWriter::pending_bytes() const {
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
     : model_(&model),
-      coordinates_(
-          (compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
+      coordinates_((compare_layout(folder, model), open_table(folder / kCoordinatesFile, model.n_q()))),
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
       modes_(open_modes(folder, model)),
       checksums_(folder, kChecksumsFile, checked_tables(model)) {

@@ -2,8 +2,8 @@
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number. supports.npy contains the contact cache of scenes with contact, and
 // checksums.npy the checksums of these tables. A recorded state is the initial state or a state after a step,
-// never an interpolated one. A run resumed from it reproduces all later states bit by bit. layout.json names
-// every column.
+// never an interpolated one. A run resumed from it reproduces all later states bit by bit. layout.json
+// (layout.h) names every column.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,7 @@
 
 #include <pliant/body/model.h>
 #include <pliant/io/checksums.h>
-#include <pliant/io/format/column.h>
 #include <pliant/io/format/npy.h>
-#include <pliant/io/frame_schedule.h>
 
 namespace pliant {
 
@@ -24,12 +22,6 @@ namespace pliant {
 class RecordingMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-/// Writes layout.json: names, units and meanings of the columns of all tables, and the times of frames.
-/// trajectory: columns of trajectory.csv. contacts: whether the run records contacts. Throws
-/// std::system_error.
-void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
-                  const std::vector<Column>& trajectory, bool contacts = false);
 
 /// Returns the tables of states that checksums.npy checks.
 std::vector<CheckedTable> checked_tables(const Model& model);

@@ -6,6 +6,7 @@
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/format/ply.h>
 #include <pliant/io/format/whole_file.h>
+#include <pliant/io/layout.h>
 #include <pliant/io/run/checkpoint.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/run_files.h>
@@ -77,8 +78,8 @@ void Run::mend_inputs() {
 }
 
 void Run::write_layout(const std::filesystem::path& folder) {
-  pliant::write_layout(folder, simulation_->model(), schedule_,
-                       TrajectoryTable(*scene_, *simulation_).columns(), scene_->contacts);
+  const TrajectoryTable trajectory(*scene_, *simulation_);
+  pliant::write_layout(folder, simulation_->model(), schedule_, trajectory.columns(), scene_->contacts);
   add_whole_file(folder, kLayoutFile);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <pliant/io/contact_recording.h>
+#include <pliant/io/frame_schedule.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/io/run/progress.h>

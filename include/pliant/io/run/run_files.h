@@ -10,7 +10,7 @@ namespace pliant {
 inline constexpr const char* kRunFile = "run.json";        ///< the run record: options, progress, cost, notes
 inline constexpr const char* kSceneFile = "scene.json";    ///< the text of the scene file
 inline constexpr const char* kLayoutFile = "layout.json";  ///< the columns of the tables
-inline constexpr int kRecordingVersion = 4;                ///< version of layout.json and the tables
+inline constexpr int kRecordingVersion = 5;                ///< version of layout.json and the tables
 inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
