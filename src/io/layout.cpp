@@ -14,6 +14,7 @@
 #include <pliant/io/recording.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
+#include <pliant/io/work_row.h>
 
 namespace pliant {
 namespace {
@@ -144,7 +145,7 @@ Json format_of(const Model& model, const FrameSchedule& schedule) {
   layout["version"] = kRecordingVersion;
   layout["rows"] =
       std::string("one row per state; row i of ") + kTimesFile + ", " + kCoordinatesFile + ", " +
-      kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
+      kVelocitiesFile + ", " + kModesFile + ", " + kWorkFile + " and " + kTrajectoryFile +
       " is state i; the number of states is the smallest number of rows of these .npy tables and of " +
       kChecksumsFile + ", without the last states whose rows of " + kContactCacheFile + " are missing";
   layout["frames"] = {
@@ -180,6 +181,7 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   Json& tables = layout["tables"];
   tables[kTimesFile] = table_json({{"t", "s", "time: start + step * step_size"}});
   for (const auto& [file, columns] : state_tables) tables[file] = json_of(columns);
+  tables[kWorkFile] = table_json(work_columns());
   if (model.body().contact.active) tables[kContactCacheFile] = table_json(contact_cache_columns());
   tables[kChecksumsFile] = table_json(checksum_columns(checked_tables(model)));
   if (contacts) {
