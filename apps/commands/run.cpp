@@ -312,7 +312,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "Ctrl-C\n"
       "Output: run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy, "
       "modes.npy,\n"
-      "work.npy and supports.npy, described in layout.json), meshes/ and frames/. With \"output\": {\"contacts\": "
+      "work.npy and supports.npy, described in layout.json), meshes/ and frames/. With \"output\": "
+      "{\"contacts\": "
       "true} in the\n"
       "scene also contacts.csv and joint_impulses.csv.");
   command->callback([options, &action] {
