@@ -13,14 +13,6 @@ namespace {
 
 constexpr std::size_t kNpyHeader = 128;
 
-/// Runs `pliant verify` and returns its exit code.
-int verify(const FaultyRun& place, const std::string& run) {
-  const std::string line =
-      "cd '" + (place / "").string() + "' && '" PLIANT_PROGRAM "' verify " + run + " > .out 2>&1";
-  const int status = std::system(line.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 void flip_bit(const fs::path& file, std::size_t byte, int bit) {
   std::string bytes = bytes_of(file);
   bytes.at(byte) = static_cast<char>(bytes.at(byte) ^ (1 << bit));
@@ -37,7 +29,7 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
   const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
-  REQUIRE(verify(place, "whole") == 0);
+  REQUIRE(place.verify("whole") == 0);
   CHECK(has(place.output(),
             "checked: 11 states in t.npy, q.npy, v.npy, modes.npy, work.npy, supports.npy, contacts.npy"));
   CHECK(has(place.output(), "checked: 11 frames in whole/meshes"));
@@ -52,7 +44,7 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
       place.copy("whole", "damaged");
       flip_bit(place / ("damaged/" + name), byte, static_cast<int>(byte % 8));
       INFO(name << ", byte " << byte << " of " << size);
-      CHECK(verify(place, "damaged") == 10);
+      CHECK(place.verify("damaged") == 10);
       CHECK(has(place.output(), "damaged/" + name));
       const int code = place.resume("damaged");
       INFO(place.output());
@@ -71,7 +63,7 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
 TEST_CASE("I55: verify finds flipped bits in pictures") {
   const FaultyRun place("--end 0.01", "--png --quiet");
   REQUIRE(place.run("whole") == 0);
-  REQUIRE(verify(place, "whole") == 0);
+  REQUIRE(place.verify("whole") == 0);
   CHECK(has(place.output(), "checked: 2 frames in whole/frames"));
   const std::string picture = "damaged/frames/frame_000001.png";
   const std::size_t size = fs::file_size(place / "whole/frames/frame_000001.png");
@@ -79,7 +71,7 @@ TEST_CASE("I55: verify finds flipped bits in pictures") {
     place.copy("whole", "damaged");
     flip_bit(place / picture, byte, 5);
     INFO("byte " << byte << " of " << size);
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(has(place.output(), picture + " is damaged"));
   }
 }
@@ -92,18 +84,18 @@ TEST_CASE("I55: verify reports frames and tables that are missing or cut") {
     place.copy("whole", "damaged");
     INFO(name);
     fs::resize_file(place / ("damaged/" + name), fs::file_size(place / ("whole/" + name)) - 1);
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(place.resume("damaged") == 0);  // the lost states are simulated again
     CHECK(difference(place.files("damaged"), whole) == "");
     fs::remove(place / ("damaged/" + name));
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(has(place.output(), "damaged/" + name));
   }
   place.copy("whole", "damaged");
   fs::remove(place / "damaged/meshes/frame_000003.obj");
-  CHECK(verify(place, "damaged") == 10);
+  CHECK(place.verify("damaged") == 10);
   CHECK(has(place.output(), "damaged/meshes/frame_000003.obj is missing"));
-  CHECK(verify(place, "nothing") == 3);
+  CHECK(place.verify("nothing") == 3);
 }
 
 TEST_CASE("two runs have equal trajectory hashes in run.json if and only if their motion is the same") {

@@ -115,6 +115,8 @@ class FaultyRun {
     return fs::exists(folder_ / run) ? program("-o " + run + " " + outputs_ + " --resume", "")
                                      : this->run(run);
   }
+  /// Runs `pliant verify` for a run and returns the exit code.
+  int verify(const std::string& run) const { return shell("'" PLIANT_PROGRAM "' verify " + run); }
   /// Runs the program under ptrace, see run_traced(). Its output is that of the last command.
   Ended traced(const std::string& run, const std::string& more,
                const std::function<Action(const Call&)>& at_call, bool with_paths = false) const {
@@ -162,8 +164,10 @@ class FaultyRun {
 
  private:
   int program(const std::string& arguments, const std::string& before) const {
-    const std::string line = "cd '" + folder_.path.string() + "' && " + before +
-                             " '" PLIANT_PROGRAM "' run bounce.json " + arguments + " > .out 2>&1";
+    return shell(before + " '" PLIANT_PROGRAM "' run bounce.json " + arguments);
+  }
+  int shell(const std::string& command) const {
+    const std::string line = "cd '" + folder_.path.string() + "' && " + command + " > .out 2>&1";
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }

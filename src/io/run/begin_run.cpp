@@ -257,9 +257,8 @@ void Run::resume_recording(const StableStep& stable) {
     earlier_work_.steps.factorisations = record_.work.steps.factorisations;
     work_at_start_ = RunWork{simulation_->step_counters(), simulation_->counters()};
     work_at_start_->parts += first_evaluation(*simulation_);
-  } else {
-    record_state();
   }
+  if (from.keep == 0 && simulation_->time() == 0) record_state();
   ++record_.resumed;
   describe(stable);
   save(true);
