@@ -28,8 +28,29 @@
 namespace pliant_cli {
 namespace {
 
+/// Returns a text in which each word of more than kLongestWord bytes, such as a path, is shortened in its
+/// middle, so that the rest of a message is easy to find.
+std::string with_short_words(const std::string& text) {
+  constexpr std::size_t kLongestWord = 400, kKept = 150;
+  auto is_continuation = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \n", begin), text.size() - 1) + 1;
+    std::size_t first = begin + kKept, last = end - std::min(end, kKept);
+    if (end - begin > kLongestWord) {
+      while (is_continuation(first)) ++first;
+      while (is_continuation(last)) ++last;
+      result += text.substr(begin, first - begin) + "..." + text.substr(last, end - last);
+    } else {
+      result += text.substr(begin, end - begin);
+    }
+    begin = end;
+  }
+  return result;
+}
+
 int report(const char* what, int code) {
-  std::cerr << "pliant: error: " << what << "\n";
+  std::cerr << "pliant: error: " << with_short_words(what) << "\n";
   return code;
 }
 
@@ -121,7 +142,7 @@ int reporting_failures(const std::function<int()>& task) {
   try {
     return task();
   } catch (const pliant::SceneError& error) {
-    std::cerr << error.what();
+    std::cerr << with_short_words(error.what());
     return kInput;
   } catch (const pliant::FileError& error) {
     return report(error.what(), error.exit_code());
@@ -165,7 +186,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = parsed.empty() ? app : *parsed.front();
   const std::string unexpected = unexpected_words(app, command);
   const std::string what = unexpected.empty() ? pliant::escaped(error.what()) : unexpected;
-  std::cerr << "pliant: error: " << what << "\nTry: pliant "
+  std::cerr << "pliant: error: " << with_short_words(what) << "\nTry: pliant "
             << (parsed.empty() ? "" : command.get_name() + " ") << "--help\n";
   return kCommandLine;
 }

@@ -30,7 +30,13 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.scene->width = run.record.width;
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
-  run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
+  try {
+    run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
+  } catch (const pliant::RecordingMismatch& fault) {
+    if (run.record.status != pliant::RunRecord::Status::running) throw;
+    throw pliant::RecordingMismatch(std::string(fault.what()) +
+                                    "; the run did not end, and pliant run --resume continues it, if it can");
+  }
   // A run that was killed may have lost states that were not yet on the disk. A run that has ended cannot
   // have lost states.
   if (run.record.status != pliant::RunRecord::Status::running && run.recording->rows() < run.record.states)

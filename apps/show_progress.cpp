@@ -9,12 +9,12 @@
 
 #include <unistd.h>
 
+#include <pliant/io/run/wall_clock.h>
+
 #include "stop_signal.h"
 
 namespace pliant_cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Returns a duration as text, for example "42 s", "3 min 5 s" or "2 h 10 min".
 std::string duration(double seconds) {
@@ -38,11 +38,11 @@ class StageProgress : public pliant::Progress {
     unit_ = unit;
     total_ = total;
     done_ = 0;
-    start_ = shown_ = Clock::now();
+    start_ = shown_ = pliant::WallClock::now();
   }
   void advance(double done) override {
     done_ = done;
-    const Clock::time_point now = Clock::now();
+    const pliant::WallClock::time_point now = pliant::WallClock::now();
     if (due(now)) {
       shown_ = now;
       show();
@@ -58,11 +58,11 @@ class StageProgress : public pliant::Progress {
   }
 
  protected:
-  virtual bool due(Clock::time_point now) = 0;
+  virtual bool due(pliant::WallClock::time_point now) = 0;
   virtual void show() = 0;
   virtual void clear() {}
 
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double elapsed() const { return pliant::seconds_since(start_); }
   double fraction() const { return total_ > 0 ? std::min(1.0, done_ / total_) : 1; }
   // Returns the progress as text, for example "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left".
   std::string numbers() const {
@@ -76,7 +76,7 @@ class StageProgress : public pliant::Progress {
 
   std::string stage_, unit_;
   double total_ = 0, done_ = 0;
-  Clock::time_point start_, shown_;
+  pliant::WallClock::time_point start_, shown_;
 };
 
 class Bar final : public StageProgress {
@@ -90,7 +90,9 @@ class Bar final : public StageProgress {
   }
 
  private:
-  bool due(Clock::time_point now) override { return now - shown_ > std::chrono::milliseconds(100); }
+  bool due(pliant::WallClock::time_point now) override {
+    return now - shown_ > std::chrono::milliseconds(100);
+  }
   void show() override {
     constexpr int width = 30;
     const int full = static_cast<int>(fraction() * width);
@@ -120,7 +122,7 @@ class Lines final : public StageProgress {
   }
 
  private:
-  bool due(Clock::time_point now) override {
+  bool due(pliant::WallClock::time_point now) override {
     const int tenth = static_cast<int>(10 * fraction());
     const bool long_stage = now - start_ > std::chrono::seconds(2);  // short stages report their end only
     if (!(long_stage && tenth > tenth_ && tenth < 10) && now - shown_ < std::chrono::seconds(60))

@@ -7,6 +7,7 @@
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/scheduled_step.h>
+#include <pliant/io/run/wall_clock.h>
 #include <pliant/io/state_row.h>
 #include <pliant/scene/read_scene.h>
 #include <pliant/simulate/stable_step.h>
@@ -23,22 +24,16 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
-using WallClock = std::chrono::steady_clock;
-
-double seconds_since(WallClock::time_point start) {
-  return std::chrono::duration<double>(WallClock::now() - start).count();
-}
-
 // Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
 // run for kTrial seconds of wall-clock time, at least one step. If they do not reach the end of the run, the
 // second half of this time is extrapolated, because the first steps to a tolerance are short.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   constexpr double kTrial = 0.2;
-  const WallClock::time_point start = WallClock::now();
+  const pliant::WallClock::time_point start = pliant::WallClock::now();
   double seconds = 0, half_seconds = 0, half_time = 0;
   while (!pliant::at_end(simulation, schedule) && seconds < kTrial) {
     pliant::scheduled_step(simulation, schedule);
-    seconds = seconds_since(start);
+    seconds = pliant::seconds_since(start);
     if (seconds > kTrial / 2) continue;
     half_seconds = seconds;
     half_time = simulation.time();
@@ -79,7 +74,7 @@ void print_estimate(pliant::Scene& scene) {
               << " s of computation";
   const pliant::Model& model = simulation.model();
   const std::size_t numbers = 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) +
-                              pliant::mode_columns_of(model, simulation.clusters() != nullptr).size();
+                              pliant::mode_count(model, simulation.clusters() != nullptr);
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
             << (model.body().contact.active ? "at least " : "")
             << pliant::rounded_text(
@@ -96,7 +91,7 @@ void print_preparation(double seconds) {
 }
 
 int check(const CheckCommand& command) {
-  const WallClock::time_point start = WallClock::now();
+  const pliant::WallClock::time_point start = pliant::WallClock::now();
   const bool machine = command.diagnostics == "json";
   pliant::Diagnostics diagnostics;
   std::unique_ptr<pliant::Scene> scene;
@@ -112,7 +107,7 @@ int check(const CheckCommand& command) {
   else if (diagnostics.warnings() > 0)
     std::cerr << diagnostics.text();
   if (machine) return kDone;
-  const double preparation = seconds_since(start);
+  const double preparation = pliant::seconds_since(start);
   print_estimate(*scene);
   print_preparation(preparation);
   return kDone;

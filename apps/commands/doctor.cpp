@@ -1,5 +1,4 @@
 // pliant doctor: reports which features work on this machine.
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include <pliant/io/format/whole_file.h>
+#include <pliant/io/run/wall_clock.h>
 #include <pliant/render/gl/gl_context.h>
 
 #include "command.h"
@@ -42,17 +42,16 @@ void print_graphics() {
 // Writes a temporary file of 64 MiB to a folder and waits until its bytes are on the disk. Returns the speed,
 // MB/s.
 double write_speed(const fs::path& folder) {
-  using Clock = std::chrono::steady_clock;
   constexpr std::size_t block = std::size_t{1} << 20, blocks = 64;
   const std::vector<char> bytes(block, 'p');
   const fs::path file = folder / ("pliant-doctor-" + std::to_string(::getpid()));
-  const Clock::time_point start = Clock::now();
+  const pliant::WallClock::time_point start = pliant::WallClock::now();
   {
     pliant::WholeFile writer(file);
     for (std::size_t i = 0; i < blocks; ++i) writer.write(bytes.data(), bytes.size());
     writer.become_target(pliant::Durable::yes);
   }
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const double seconds = pliant::seconds_since(start);
   fs::remove(file);
   return static_cast<double>(block * blocks) / 1e6 / seconds;
 }

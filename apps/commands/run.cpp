@@ -147,7 +147,7 @@ void print_error(const pliant::ErrorEstimate& error) {
 /// Returns "; largest violation of the laws of contact R m/s, largest overlap D m" with the values of a run;
 /// empty without contact.
 std::string contact_summary(const pliant::Run& run) {
-  const pliant::StepCounters& counters = run.record().step_counters;
+  const pliant::StepCounters& counters = run.record().work.steps;
   if (!run.scene().body.contact.active) return {};
   return "; largest violation of the laws of contact " + pliant::rounded_text(counters.contact_residual) +
          " m/s, largest overlap " + pliant::rounded_text(counters.contact_overlap) + " m";
@@ -315,8 +315,9 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "  pliant run scenes/pull.json -o out/pull --resume --end 20    extend a run, or continue after "
       "Ctrl-C\n"
       "Output: run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy, "
-      "modes.npy\n"
-      "and supports.npy, described in layout.json), meshes/ and frames/. With \"output\": {\"contacts\": "
+      "modes.npy,\n"
+      "work.npy and supports.npy, described in layout.json), meshes/ and frames/. With \"output\": "
+      "{\"contacts\": "
       "true} in the\n"
       "scene also contacts.csv and joint_impulses.csv.");
   command->callback([options, &action] {

@@ -76,7 +76,7 @@ void add_verify(CLI::App& app, Action& action) {
     bool quiet = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("verify", "Check that all files of a run are there and undamaged");
+  CLI::App* command = app.add_subcommand("verify", "Check that no file of a run is missing or damaged");
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_flag("--quiet", options->quiet, "Print faults only");
   command->footer(

@@ -39,6 +39,7 @@ Model::Model(const MultiBody& body) : Model(body, all_parts(body)) {}
 
 Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part_numbers_(std::move(parts)) {
   if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity at time 0 is not finite");
+  parts_.reserve(part_numbers_.size());
   for (const int i : part_numbers_) add_part(*body.parts()[static_cast<std::size_t>(i)]);
   add_springs();
   add_forces_and_torques();

@@ -189,13 +189,16 @@ class RowCheck {
  public:
   explicit RowCheck(NpyReader table) : table_(std::move(table)), width_(numbers_in_row(table_)) {}
 
-  /// Reads the rows up to `end` and compares the checksum of all rows so far with `expected`.
-  void add_rows(std::int64_t end, std::uint32_t expected) {
-    if (!damage_.empty()) return;
-    if (end < first_ || end > table_.rows()) {
-      damage_ = table_.path().string() + " ends at row " + std::to_string(table_.rows()) +
-                ", and its checksums are of more rows";
-      return;
+  /// Returns whether the table contains the rows up to `end`.
+  bool has_rows(std::int64_t end) const { return end <= table_.rows(); }
+  /// Reads the rows up to `end`, which the table contains, and compares the checksum of all rows so far with
+  /// `expected`. Returns whether no row so far is damaged.
+  bool add_rows(std::int64_t end, std::uint32_t expected) {
+    if (!damage_.empty()) return false;
+    if (end < first_) {
+      damage_ = table_.path().string() + " has checksums of fewer rows than before, at row " +
+                std::to_string(first_);
+      return false;
     }
     numbers_.resize(static_cast<std::size_t>(end - first_) * width_);
     table_.read(first_, numbers_.data(), end - first_);
@@ -205,6 +208,7 @@ class RowCheck {
                 (end - first_ > 1 ? ", or between this row and row " + std::to_string(end) : "") +
                 ": its checksum does not match";
     first_ = end;
+    return damage_.empty();
   }
   /// Returns the first damage; empty if there is none.
   const std::string& damage() const { return damage_; }
@@ -220,22 +224,28 @@ class RowCheck {
 
 }  // namespace
 
-std::vector<std::string> ChecksumReader::damage(std::int64_t states) const {
+Inspection ChecksumReader::inspect() const {
   std::vector<RowCheck> checks;
   checks.reserve(tables_.size());
   for (const CheckedTable& table : tables_) checks.emplace_back(open_checked(folder_ / table.file));
-  std::vector<std::string> texts;
+  Inspection result;
   try {
-    for (std::int64_t state = 0; state < states; ++state) {
+    for (std::int64_t state = 0; state < reader_.rows(); ++state) {
       const Entry expected = entry(state);
-      for (std::size_t k = 0; k < checks.size(); ++k) checks[k].add_rows(expected.rows[k], expected.crc[k]);
+      bool contained = true, good = true;
+      for (std::size_t k = 0; k < checks.size(); ++k)
+        contained = contained && checks[k].has_rows(expected.rows[k]);
+      if (!contained) break;
+      for (std::size_t k = 0; k < checks.size(); ++k)
+        good = checks[k].add_rows(expected.rows[k], expected.crc[k]) && good;
+      if (good) result.undamaged = state + 1;
     }
   } catch (const RecordingMismatch& fault) {
-    texts.emplace_back(fault.what());
+    result.damage.emplace_back(fault.what());
   }
   for (const RowCheck& check : checks)
-    if (!check.damage().empty()) texts.push_back(check.damage());
-  return texts;
+    if (!check.damage().empty()) result.damage.push_back(check.damage());
+  return result;
 }
 
 }  // namespace pliant

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include <pliant/body/advance.h>
 #include <pliant/body/dynamics.h>
-#include <pliant/io/format/number_text.h>
-#include <pliant/io/format/whole_file.h>
+#include <pliant/io/layout.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
 #include <pliant/method/step_path.h>
@@ -21,45 +17,6 @@
 
 namespace pliant {
 namespace {
-
-int mode_count(const Model& model, bool in_clusters) {
-  return static_cast<int>(mode_columns_of(model, in_clusters).size());
-}
-
-// Throws RecordingMismatch if the column names of a table in layout.json differ from those of the model.
-void compare_columns(const nlohmann::json& layout, const char* table, int count,
-                     const std::filesystem::path& file, const std::function<std::string(int)>& name) {
-  const nlohmann::json& columns = layout.at("tables").at(table);
-  for (int i = 0; i < std::min(count, static_cast<int>(columns.size())); ++i) {
-    const std::string recorded = columns.at(static_cast<std::size_t>(i)).at("name");
-    if (recorded != name(i))
-      throw RecordingMismatch(file.string() + " was recorded from another scene: column " +
-                              std::to_string(i) + " of " + table + " is " + recorded +
-                              ", and in this scene " + name(i));
-  }
-  if (static_cast<int>(columns.size()) != count)
-    throw RecordingMismatch(file.string() + " was recorded from another scene: " + table + " has " +
-                            std::to_string(columns.size()) + " columns, and this scene needs " +
-                            std::to_string(count));
-}
-
-void compare_layout(const std::filesystem::path& file, const Model& model) {
-  if (!std::filesystem::exists(file))
-    throw RecordingMismatch("there is no recording: " + file.string() + " is missing");
-  const std::string text = read_whole_file(file);
-  try {
-    const nlohmann::json layout = nlohmann::json::parse(text);
-    if (layout.at("version") != kRecordingVersion)
-      throw RecordingMismatch(file.string() + " has version " + layout.at("version").dump() + ", expected " +
-                              std::to_string(kRecordingVersion));
-    compare_columns(layout, kCoordinatesFile, model.n_q(), file,
-                    [&](int i) { return model.coordinate_name(i); });
-    compare_columns(layout, kVelocitiesFile, model.n_v(), file,
-                    [&](int i) { return model.velocity_name(i); });
-  } catch (const nlohmann::json::exception& fault) {
-    throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
-  }
-}
 
 NpyReader open_table(const std::filesystem::path& path, int columns) {
   try {
@@ -80,14 +37,14 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
 /// Opens modes.npy, with or without columns for clusters.
 NpyReader open_modes(const std::filesystem::path& folder, const Model& model) {
   const std::filesystem::path path = folder / kModesFile;
-  const int in_clusters = mode_count(model, true);
+  const int in_clusters = static_cast<int>(mode_count(model, true));
   try {
     NpyReader reader(path);
     if (model.forms_clusters() && reader.columns() == in_clusters) return reader;
   } catch (const std::runtime_error&) {
     // open_table() reports the fault
   }
-  return open_table(path, mode_count(model, false));
+  return open_table(path, static_cast<int>(mode_count(model, false)));
 }
 
 bool has_contact_cache(const Model& model) {
@@ -97,13 +54,24 @@ bool has_contact_cache(const Model& model) {
 }  // namespace
 
 std::vector<CheckedTable> checked_tables(const Model& model) {
-  std::vector<CheckedTable> tables{
-      {kTimesFile, true}, {kCoordinatesFile, true}, {kVelocitiesFile, true}, {kModesFile, true}};
+  std::vector<CheckedTable> tables{{kTimesFile, true},
+                                   {kCoordinatesFile, true},
+                                   {kVelocitiesFile, true},
+                                   {kModesFile, true},
+                                   {kWorkFile, true}};
   if (has_contact_cache(model)) tables.push_back({kContactCacheFile, false});
   return tables;
 }
 
+ChecksumReader state_checksums(const std::filesystem::path& folder, const Model& model) {
+  return {folder, kChecksumsFile, checked_tables(model)};
+}
+
 namespace {
+
+int work_count() {
+  return static_cast<int>(work_columns().size());
+}
 
 int cached_contact_count() {
   return static_cast<int>(contact_cache_columns().size());
@@ -122,7 +90,7 @@ CachedContactRows cached_contact_rows(const std::vector<double>& modes) {
 }
 
 /// Indices of the tables of checked_tables().
-enum : std::size_t { kTimes, kCoordinates, kVelocities, kModes, kContactCache };
+enum : std::size_t { kTimes, kCoordinates, kVelocities, kModes, kWorkOfState, kContactCache };
 
 std::vector<double> read_row(const NpyReader& table, std::int64_t row) {
   std::vector<double> numbers(static_cast<std::size_t>(table.columns()));
@@ -143,7 +111,8 @@ RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, con
   return {{NpyWriter::create(folder / kTimesFile, kNpyVector),
            NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
            NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-           NpyWriter::create(folder / kModesFile, mode_count(model, in_clusters)), std::move(contact_cache)},
+           NpyWriter::create(folder / kModesFile, static_cast<int>(mode_count(model, in_clusters))),
+           NpyWriter::create(folder / kWorkFile, work_count()), std::move(contact_cache)},
           ChecksumWriter::create(folder / kChecksumsFile, checked_tables(model))};
 }
 
@@ -162,11 +131,11 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
            NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
            NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
            NpyWriter::resume(folder / kModesFile, open_modes(folder, model).columns(), rows),
-           std::move(contact_cache)},
+           NpyWriter::resume(folder / kWorkFile, work_count(), rows), std::move(contact_cache)},
           ChecksumWriter::resume(folder / kChecksumsFile, checked_tables(model), rows)};
 }
 
-void RecordingWriter::append(const State& state) {
+void RecordingWriter::append(const State& state, const RunWork& work) {
   const double time = state.time();
   tables_.times.append(&time);
   checksums_.add(kTimes, &time, 1);
@@ -183,30 +152,34 @@ void RecordingWriter::append(const State& state) {
   write_modes(state, tables_.contact_cache ? tables_.contact_cache->rows() : 0, row_);
   tables_.modes.append(row_.data());
   checksums_.add(kModes, row_.data(), row_.size());
+  row_ = work_row(work);
+  tables_.work.append(row_.data());
+  checksums_.add(kWorkOfState, row_.data(), row_.size());
   checksums_.end_state();
 }
 
 void RecordingWriter::flush(bool to_disk) {
   auto flush_table = [to_disk](auto& table) { to_disk ? table.flush_to_disk() : table.flush(); };
   if (tables_.contact_cache) flush_table(*tables_.contact_cache);
-  for (NpyWriter* table : {&tables_.coordinates, &tables_.velocities, &tables_.modes, &tables_.times})
+  for (NpyWriter* table :
+       {&tables_.coordinates, &tables_.velocities, &tables_.modes, &tables_.work, &tables_.times})
     flush_table(*table);
   flush_table(checksums_);
 }
 
 std::size_t RecordingWriter::pending_bytes() const {
   return tables_.coordinates.pending_bytes() + tables_.velocities.pending_bytes() +
-         tables_.modes.pending_bytes() + checksums_.pending_bytes() +
+         tables_.modes.pending_bytes() + tables_.work.pending_bytes() + checksums_.pending_bytes() +
          (tables_.contact_cache ? tables_.contact_cache->pending_bytes() : 0);
 }
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
     : model_(&model),
-      coordinates_(
-          (compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
+      coordinates_((compare_layout(folder, model), open_table(folder / kCoordinatesFile, model.n_q()))),
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
       modes_(open_modes(folder, model)),
-      checksums_(folder, kChecksumsFile, checked_tables(model)) {
+      work_(open_table(folder / kWorkFile, work_count())),
+      checksums_(state_checksums(folder, model)) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
   if (has_contact_cache(model))
     contact_cache_.emplace(open_table(folder / kContactCacheFile, cached_contact_count()));
@@ -241,6 +214,10 @@ State Recording::state(std::int64_t row) const {
   velocities_.read(row, state.v.data());
   if (!read_modes(modes, *model_, state) || !(state.time() == time(row))) throw damaged();
   return state;
+}
+
+RunWork Recording::work(std::int64_t row) const {
+  return read_work_row(read_row(work_, row).data());
 }
 
 namespace {

@@ -20,12 +20,17 @@ const ParameterSpec& dynamic_parameter(const PartModel& part, int k) {
   return *part.part->parameters().moving(k).spec;
 }
 
+/// Returns "*.NAME" for the name "PART.NAME" of a coordinate or velocity of a part.
+std::string pattern_of(const PartModel& part, const std::string& name) {
+  return '*' + name.substr(part.part->name().size());
+}
+
 }  // namespace
 
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part) {
   std::vector<Column> columns;
-  for (int k = 0; k < part.n_q(); ++k) {
-    Column column{model.coordinate_name(part.q0 + k), "", ""};
+  for (int k = 0; part.q0 >= 0 && k < part.n_q(); ++k) {
+    Column column{pattern_of(part, model.coordinate_name(part.q0 + k)), "", ""};
     if (k < 3)
       column.unit = "m", column.meaning = "position of the frame, world";
     else if (k < 7)
@@ -42,8 +47,8 @@ std::vector<Column> coordinate_columns(const Model& model, const PartModel& part
 
 std::vector<Column> velocity_columns(const Model& model, const PartModel& part) {
   std::vector<Column> columns;
-  for (int k = 0; k < part.n_v(); ++k) {
-    Column column{model.velocity_name(part.v0 + k), "", ""};
+  for (int k = 0; part.v0 >= 0 && k < part.n_v(); ++k) {
+    Column column{pattern_of(part, model.velocity_name(part.v0 + k)), "", ""};
     if (k < 3)
       column.unit = "m/s", column.meaning = "velocity of the frame, world";
     else if (k < 6)
@@ -57,7 +62,26 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
   return columns;
 }
 
-std::vector<Column> mode_columns_of(const Model& model, bool in_clusters) {
+namespace {
+
+/// Returns the columns of the limits of the dynamic parameters of a part in modes.npy.
+std::vector<Column> limit_columns(const Model& model, const PartModel& part) {
+  std::vector<Column> columns;
+  for (int k = 0; part.q0 >= 0 && k < part.n_s; ++k)
+    columns.push_back({"limit." + pattern_of(part, model.coordinate_name(part.q0 + 7 + k)), "1",
+                       "-1 at the lower limit, 1 at the upper limit, 0 free"});
+  return columns;
+}
+
+std::vector<Column> cluster_columns() {
+  return {{"step_size.*", "s", "length of the next step of its cluster"},
+          {"error.*", "1", "error of the last step of its cluster / tolerance"},
+          {"contact_residual.*", "m/s", "residual of the contact laws in that step"},
+          {"supports_age.*", "1", "consecutive steps of its cluster with a warm start"}};
+}
+
+/// Returns the first columns of modes.npy, which do not depend on the model.
+std::vector<Column> common_mode_columns() {
   std::vector<Column> columns{
       {"start", "s", "time of step 0"},
       {"step_size", "s", "length of a step; with error control, of the next step"},
@@ -68,26 +92,42 @@ std::vector<Column> mode_columns_of(const Model& model, bool in_clusters) {
       {"supports_end", "1", "one past the last row of this state in supports.npy"},
       {"supports_age", "1", "number of consecutive steps with a warm start from the contact cache"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
-  for (const PartModel& part : model.parts()) {
-    if (part.q0 < 0) continue;
-    for (int k = 0; k < part.n_s; ++k)
-      columns.push_back({"limit." + model.coordinate_name(part.q0 + 7 + k), "1",
-                         "-1 at the lower limit, 1 at the upper limit, 0 free"});
-  }
-  if (model.n_resting() > 0)
-    for (const PartModel& part : model.parts())
-      columns.push_back({"rest." + part.part->name(), "s", "time at rest; negative: the part sleeps"});
-  for (std::size_t i = 0; in_clusters && i < model.parts().size(); ++i) {
-    const std::string& name = model.parts()[i].part->name();
-    columns.push_back({"step_size." + name, "s", "length of the next step of its cluster"});
-    columns.push_back({"error." + name, "1", "error of the last step of its cluster / tolerance"});
-    columns.push_back({"contact_residual." + name, "m/s", "residual of the contact laws in that step"});
-    columns.push_back({"supports_age." + name, "1", "consecutive steps of its cluster with a warm start"});
-  }
-  for (const JointModel& joint : model.joints())
-    columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
-  columns.push_back({"check", "1", "upper 53 bits of a hash of the state"});
   return columns;
+}
+
+}  // namespace
+
+TableColumns coordinate_columns(const Model& model) {
+  return {{ColumnGroup::Each::part, "coordinates",
+           [&model](std::size_t i) { return coordinate_columns(model, model.parts()[i]); }}};
+}
+
+TableColumns velocity_columns(const Model& model) {
+  return {{ColumnGroup::Each::part, "velocities",
+           [&model](std::size_t i) { return velocity_columns(model, model.parts()[i]); }}};
+}
+
+TableColumns mode_columns(const Model& model, bool in_clusters) {
+  using Each = ColumnGroup::Each;
+  TableColumns columns{table_group(common_mode_columns())};
+  columns.push_back(
+      {Each::part, "limits", [&model](std::size_t i) { return limit_columns(model, model.parts()[i]); }});
+  if (model.n_resting() > 0)
+    columns.push_back(
+        {Each::part, "rest", [](std::size_t) {
+           return std::vector<Column>{{"rest.*", "s", "time at rest; negative: the part sleeps"}};
+         }});
+  if (in_clusters) columns.push_back({Each::part, "cluster", [](std::size_t) { return cluster_columns(); }});
+  columns.push_back({Each::joint, "mode", [](std::size_t) {
+                       return std::vector<Column>{{"joint.*", "1", "0 off, 1 closing, 2 closed, 3 slack"}};
+                     }});
+  columns.push_back(table_group({{"check", "1", "upper 53 bits of a hash of the state"}}));
+  return columns;
+}
+
+std::size_t mode_count(const Model& model, bool in_clusters) {
+  return kEndOfCachedContacts + 2 + kWorks + static_cast<std::size_t>(model.n_limits()) + model.n_resting() +
+         (in_clusters ? kMemoryColumns * model.parts().size() : 0) + model.joints().size() + 1;
 }
 
 std::vector<Column> contact_cache_columns() {

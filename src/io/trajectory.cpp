@@ -1,5 +1,7 @@
 #include <pliant/io/trajectory.h>
 
+#include <utility>
+
 #include <pliant/io/format/csv_cell.h>
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/format/whole_file.h>
@@ -46,28 +48,33 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
   for (const Track& track : scene.tracks) tracked_.emplace_back(simulation.model(), track.point);
 }
 
-std::vector<Column> TrajectoryTable::columns() const {
+/// Returns the columns of a part, with "*" for its name.
+std::vector<Column> TrajectoryTable::part_columns(std::size_t i) const {
   const Model& model = simulation_->model();
-  std::vector<Column> columns{{"t", "s", "time"}};
-  for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
-    const PartModel& part = model.parts()[i];
-    if (part.q0 < 0) continue;
-    // The coordinates of local deformation have columns in q.npy and v.npy only.
-    add_some(columns, coordinate_columns(model, part), 7 + part.n_s);
-    add_some(columns, velocity_columns(model, part), 6 + part.n_s);
-    if (centre_shown_[i]) add_axes(columns, part.part->name() + ".com", "m", "centre of mass, world");
-  }
-  for (const Track& track : scene_->tracks)
-    add_axes(columns, "track." + track.name, "m", "tracked point, world");
-  for (const JointModel& joint : simulation_->model().joints()) {
-    if (!parts_shown_) break;
-    const std::string name = "joint." + joint.joint->name();
-    add_axes(columns, name + ".force", "N", "force on the first side of the joint, world");
-    if (has_torque(joint))
-      add_axes(columns, name + ".torque", "N m",
-               "torque on the first side of the joint, about the joint, world");
-    columns.push_back({name + ".gap", "m", "distance by which the joint is open"});
-  }
+  const PartModel& part = model.parts()[i];
+  if (part.q0 < 0) return {};
+  std::vector<Column> columns;
+  // The coordinates of local deformation have columns in q.npy and v.npy only.
+  add_some(columns, coordinate_columns(model, part), 7 + part.n_s);
+  add_some(columns, velocity_columns(model, part), 6 + part.n_s);
+  if (centre_shown_[i]) add_axes(columns, "*.com", "m", "centre of mass, world");
+  return columns;
+}
+
+/// Returns the columns of a joint, with "*" for its name.
+std::vector<Column> TrajectoryTable::joint_columns(std::size_t j) const {
+  std::vector<Column> columns;
+  add_axes(columns, "joint.*.force", "N", "force on the first side of the joint, world");
+  if (has_torque(simulation_->model().joints()[j]))
+    add_axes(columns, "joint.*.torque", "N m",
+             "torque on the first side of the joint, about the joint, world");
+  columns.push_back({"joint.*.gap", "m", "distance by which the joint is open"});
+  return columns;
+}
+
+/// Returns the columns of energies, works and momenta.
+std::vector<Column> TrajectoryTable::total_columns() const {
+  std::vector<Column> columns;
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
     columns.push_back({std::string("energy.") + energy, "J", ""});
   if (local_shown_) columns.push_back({"energy.local", "J", "elastic energy of local deformation"});
@@ -81,6 +88,22 @@ std::vector<Column> TrajectoryTable::columns() const {
   add_axes(columns, "angular_momentum", "kg m^2/s",
            "angular momentum of all moving parts about the world's origin");
   return columns;
+}
+
+TableColumns TrajectoryTable::columns() const {
+  TableColumns table{table_group({{"t", "s", "time"}})};
+  if (parts_shown_)
+    table.push_back(
+        {ColumnGroup::Each::part, "trajectory", [this](std::size_t i) { return part_columns(i); }});
+  std::vector<Column> tracked;
+  for (const Track& track : scene_->tracks)
+    add_axes(tracked, "track." + track.name, "m", "tracked point, world");
+  table.push_back(table_group(std::move(tracked)));
+  if (parts_shown_)
+    table.push_back(
+        {ColumnGroup::Each::joint, "trajectory", [this](std::size_t j) { return joint_columns(j); }});
+  table.push_back(table_group(total_columns()));
+  return table;
 }
 
 void TrajectoryTable::add_part(const State& state, std::size_t i, std::vector<double>& numbers) const {
@@ -121,7 +144,8 @@ void write_trajectory(const std::filesystem::path& path, const Scene& scene, con
   TrajectoryTable table(scene, simulation);
   WholeFile file(path);
   std::string text;
-  for (const Column& column : table.columns()) text += (text.empty() ? "" : ",") + csv_cell(column.name);
+  for (const Column& column : all_columns(table.columns(), simulation.model()))
+    text += (text.empty() ? "" : ",") + csv_cell(column.name);
   text += '\n';
   std::vector<double> numbers;
   for (std::int64_t i = 0; i < recording.rows(); ++i) {

@@ -261,7 +261,23 @@ TEST_CASE("I49, I50: existing files are not overwritten") {
   REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
   const std::string motion = place.motion("r");
   CHECK(place.pliant("run top.json -o r --quiet").code == 9);
-  CHECK(place.pliant("run top.json -o top.json --force").code == 9);
+  for (const char* option : {"", " --force"}) {
+    const Result file = place.pliant(std::string("run top.json -o top.json") + option);
+    CHECK(file.code == 9);
+    CHECK(has(file.err, "the output folder top.json is a file; choose another name with -o"));
+  }
+  const Result no_run = place.pliant("run top.json -o top.json --resume");
+  CHECK(no_run.code == 3);
+  CHECK(has(no_run.err, "there is no run"));
+  fs::create_directory(place.folder / "other");
+  set_bytes(place.folder / "other/letter.txt", "dear");
+  for (const char* option : {"", " --force", " --resume"}) {
+    const Result other = place.pliant(std::string("run top.json -o other") + option);
+    CHECK(other.code == 9);
+    CHECK(has(other.err, "the output folder other is not empty"));
+    CHECK(has(other.err, "choose another with -o"));
+  }
+  CHECK(bytes_of(place.folder / "other/letter.txt") == "dear");
   CHECK(place.pliant("run r/scene.json -o r --force").code == 9);
   CHECK(place.pliant("run top.json -o . --force").code == 9);
   CHECK(bytes_of(place.folder / "top.json") == kTop);
@@ -526,18 +542,43 @@ TEST_CASE("frames of a run with a tolerance are drawn and exported") {
   CHECK(fs::exists(place.folder / "meshes/frame_000002.obj"));
 }
 
+TEST_CASE("names of ten thousand letters are shortened in messages, whose ends are complete") {
+  const TestFolder place;
+  const std::string name(10000, 'n');
+  for (const std::string& arguments : {"run top.json --" + name + "=3", "run top.json -o " + name,
+                                       "check top.json --set /" + name + "=3", "check " + name + ".json"}) {
+    const Result result = place.pliant(arguments);
+    CHECK(result.code != 0);
+    CHECK(result.err.size() < 1200);
+    CHECK(has(result.err, "nnn...nnn"));
+  }
+  const Result key = place.pliant("check top.json --set /" + name + "=3");
+  CHECK(key.code == 3);
+  CHECK(has(key.err, "unknown key; expected one of \"name\", \"description\", "));
+  CHECK(has(key.err, "\"ground\"\n"));
+  const Result path = place.pliant("check " + name + ".json");
+  CHECK(path.code == 7);
+  CHECK(has(path.err, "nnn.json"));
+  CHECK(has(path.err, "File name too long\n"));
+}
+
 TEST_CASE("empty keys, text after the scene and impossible shards are refused") {
   const TestFolder place;
   for (const std::string& text :
        {std::string(R"({"parts": [{"name": "a", "shape": "sphere"}], "": 3})"),
         std::string("{\"parts\": [{\"name\": \"a\", \"shape\": \"sphere\"}]}\0 {}", 49)}) {
     set_bytes(place.folder / "odd.json", text);
-    CHECK(place.pliant("check odd.json").code == 3);
+    const Result odd = place.pliant("check odd.json");
+    CHECK(odd.code == 3);
+    CHECK(has(odd.err, "odd.json:1:"));
+    CHECK((has(odd.err, "/: unknown key") || has(odd.err, "\"\\x00\" after the end of the document")));
   }
   const Result set = place.pliant("check top.json --set /=5");
   CHECK(set.code == 3);
   CHECK(has(set.err, "unknown key"));
-  CHECK(place.pliant("render out --shard 9999999999/9999999999 -o x").code == 2);
+  const Result shard = place.pliant("render out --shard 9999999999/9999999999 -o x");
+  CHECK(shard.code == 2);
+  CHECK(has(shard.err, "has more shards than a recording has frames; expected at most 1000000"));
 }
 
 }  // namespace cli_test

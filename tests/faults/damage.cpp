@@ -13,14 +13,6 @@ namespace {
 
 constexpr std::size_t kNpyHeader = 128;
 
-/// Runs `pliant verify` and returns its exit code.
-int verify(const FaultyRun& place, const std::string& run) {
-  const std::string line =
-      "cd '" + (place / "").string() + "' && '" PLIANT_PROGRAM "' verify " + run + " > .out 2>&1";
-  const int status = std::system(line.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 void flip_bit(const fs::path& file, std::size_t byte, int bit) {
   std::string bytes = bytes_of(file);
   bytes.at(byte) = static_cast<char>(bytes.at(byte) ^ (1 << bit));
@@ -31,20 +23,15 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-void copy_run(const FaultyRun& place) {
-  fs::remove_all(place / "damaged");
-  fs::copy(place / "whole", place / "damaged", fs::copy_options::recursive);
-}
-
 }  // namespace
 
 TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume does not pass it on") {
   const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
-  REQUIRE(verify(place, "whole") == 0);
+  REQUIRE(place.verify("whole") == 0);
   CHECK(has(place.output(),
-            "checked: 11 states in t.npy, q.npy, v.npy, modes.npy, supports.npy, contacts.npy"));
+            "checked: 11 states in t.npy, q.npy, v.npy, modes.npy, work.npy, supports.npy, contacts.npy"));
   CHECK(has(place.output(), "checked: 11 frames in whole/meshes"));
   CHECK(has(place.output(), "no fault found"));
   for (const auto& entry : whole) {
@@ -54,10 +41,10 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
     const std::size_t size = fs::file_size(place / ("whole/" + name)), first = table ? kNpyHeader : 0;
     if (fs::path(name).extension() == ".obj" && name != "meshes/frame_000007.obj") continue;
     for (const std::size_t byte : {first, first + (size - first) / 3, size - 1}) {
-      copy_run(place);
+      place.copy("whole", "damaged");
       flip_bit(place / ("damaged/" + name), byte, static_cast<int>(byte % 8));
       INFO(name << ", byte " << byte << " of " << size);
-      CHECK(verify(place, "damaged") == 10);
+      CHECK(place.verify("damaged") == 10);
       CHECK(has(place.output(), "damaged/" + name));
       const int code = place.resume("damaged");
       INFO(place.output());
@@ -76,15 +63,15 @@ TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume do
 TEST_CASE("I55: verify finds flipped bits in pictures") {
   const FaultyRun place("--end 0.01", "--png --quiet");
   REQUIRE(place.run("whole") == 0);
-  REQUIRE(verify(place, "whole") == 0);
+  REQUIRE(place.verify("whole") == 0);
   CHECK(has(place.output(), "checked: 2 frames in whole/frames"));
   const std::string picture = "damaged/frames/frame_000001.png";
   const std::size_t size = fs::file_size(place / "whole/frames/frame_000001.png");
   for (std::size_t byte = 0; byte < size; byte += size / 20) {
-    copy_run(place);
+    place.copy("whole", "damaged");
     flip_bit(place / picture, byte, 5);
     INFO("byte " << byte << " of " << size);
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(has(place.output(), picture + " is damaged"));
   }
 }
@@ -94,21 +81,21 @@ TEST_CASE("I55: verify reports frames and tables that are missing or cut") {
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
   for (const std::string name : {"contacts.npy", "supports.npy", "q.npy", "checksums.npy", "t.npy"}) {
-    copy_run(place);
+    place.copy("whole", "damaged");
     INFO(name);
     fs::resize_file(place / ("damaged/" + name), fs::file_size(place / ("whole/" + name)) - 1);
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(place.resume("damaged") == 0);  // the lost states are simulated again
     CHECK(difference(place.files("damaged"), whole) == "");
     fs::remove(place / ("damaged/" + name));
-    CHECK(verify(place, "damaged") == 10);
+    CHECK(place.verify("damaged") == 10);
     CHECK(has(place.output(), "damaged/" + name));
   }
-  copy_run(place);
+  place.copy("whole", "damaged");
   fs::remove(place / "damaged/meshes/frame_000003.obj");
-  CHECK(verify(place, "damaged") == 10);
+  CHECK(place.verify("damaged") == 10);
   CHECK(has(place.output(), "damaged/meshes/frame_000003.obj is missing"));
-  CHECK(verify(place, "nothing") == 3);
+  CHECK(place.verify("nothing") == 3);
 }
 
 TEST_CASE("two runs have equal trajectory hashes in run.json if and only if their motion is the same") {
@@ -129,10 +116,7 @@ TEST_CASE("a damaged checkpoint is reported, and the run continues from an earli
   const FaultyRun place("--set /output/frame_rate=4", "--checkpoint-every 0 --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   for (const std::string damaged : {"", "1", "2", "12"}) {
     fs::remove_all(place / "r");
     // Between two frames, all states are in checkpoints only.

@@ -60,27 +60,22 @@ std::string fail_and_resume(const FaultyRun& place, long call, int error,
   if (error == EINTR && ended.code != 0) return "not repeated: " + told;
   if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
   if (ended.code == 7 && !has(told, "pliant: error: ")) return "no message: " + told;
-  const bool locks = error == ENOLCK || error == EOPNOTSUPP;
-  if (locks && !has(told, "does not lock files")) return "the lock is not named: " + told;
-  const int code = place.resume("broken");
-  if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + place.output();
-  return difference(place.files("broken"), unbroken) + place.left_beside("broken");
+  const bool locks = error == ENOLCK || error == EOPNOTSUPP;  // only the lock of the folder is necessary
+  if (locks && ended.code == 7 && !has(told, "does not lock files")) return "the lock is not named: " + told;
+  return place.wrong_after_resume("broken", unbroken);
 }
 
-/// Kills a run in its middle, and lets one call fail while it is resumed. Returns what is wrong.
-std::string fail_while_resumed(const FaultyRun& place, const fs::path& killed, long call, int error,
+/// Lets one call fail while the killed run is resumed, and resumes it again. Returns what is wrong.
+std::string fail_while_resumed(const FaultyRun& place, long call, int error,
                                const std::map<std::string, std::string>& unbroken) {
-  fs::remove_all(place / "broken");
-  fs::copy(killed, place / "broken", fs::copy_options::recursive);
+  place.copy("killed", "broken");
   const Ended ended = place.traced("broken", "--resume", [&](const Call& now) {
     return Action{false, now.number == call ? error : 0};
   });
   const std::string told = place.output();
   if (error == EINTR && ended.code != 0) return "not repeated: " + told;
   if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
-  const int code = place.resume("broken");
-  if (code != 0) return "the run resumed again ended with " + std::to_string(code) + ": " + place.output();
-  return difference(place.files("broken"), unbroken);
+  return place.wrong_after_resume("broken", unbroken);
 }
 
 /// Returns calls on files of a run, each with an error that it can report.
@@ -99,10 +94,7 @@ std::vector<std::pair<long, int>> possible_faults(const FaultyRun& place, const 
 
 /// Lets about `count` of the calls on files of a run fail, each in one run.
 void check_failures(const std::string& options, const std::string& outputs, std::size_t count) {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   const FaultyRun place(options, outputs);
   REQUIRE(place.run("unbroken") == 0);
   const auto unbroken = place.files("unbroken");
@@ -122,27 +114,20 @@ TEST_CASE("I51: a call on a file that fails ends the run with code 7, and the ru
 }
 TEST_CASE(
     "I51: if the disk is full, --force keeps the old run, or the new one has begun and can be resumed") {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   const FaultyRun place("--end 0.02");
   const std::string replace = "--force --set /parts/0/density=500";
   REQUIRE(place.run("old") == 0);
   REQUIRE(place.run("new", replace) == 0);
   const auto old_files = place.files("old"), new_files = place.files("new");
-  const auto restore = [&] {
-    fs::remove_all(place / "broken");
-    fs::copy(place / "old", place / "broken", fs::copy_options::recursive);
-  };
-  restore();
+  place.copy("old", "broken");
   std::vector<long> full;  // calls that fail with ENOSPC
   for (const auto& [call, error] : possible_faults(place, replace))
     if (error == ENOSPC) full.push_back(call);
   REQUIRE(full.size() > 40);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < full.size(); i += full.size() / 40) {
-    restore();
+    place.copy("old", "broken");
     INFO("no space on the disk from call " << full[i] << " on");
     const Ended ended = place.traced(
         "broken", replace,
@@ -164,10 +149,7 @@ TEST_CASE(
   CHECK(kept > 5);
 }
 TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run can be resumed again") {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   const FaultyRun place("--end 0.04", "--checkpoint-every 0 --quiet");
   REQUIRE(place.run("unbroken") == 0);
   const auto unbroken = place.files("unbroken");
@@ -175,13 +157,29 @@ TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run ca
   fs::remove_all(place / "killed");
   place.traced("killed", "", [&](const Call& now) { return Action{now.number == calls * 3 / 4, 0}; });
   REQUIRE(fs::exists(place / "killed/checkpoint_2.npy"));
-  fs::copy(place / "killed", place / "broken", fs::copy_options::recursive);
+  place.copy("killed", "broken");
   const std::vector<std::pair<long, int>> faults = possible_faults(place, "--resume");
   REQUIRE(faults.size() > 60);
   for (std::size_t i = 0; i < faults.size(); i += faults.size() / 40) {
     INFO("call " << faults[i].first << " failed with error " << faults[i].second);
-    CHECK(fail_while_resumed(place, place / "killed", faults[i].first, faults[i].second, unbroken) == "");
+    CHECK(fail_while_resumed(place, faults[i].first, faults[i].second, unbroken) == "");
   }
+}
+TEST_CASE("I51: a parent folder that cannot be read does not prevent a run") {
+  if (!tracing_works()) return;
+  const FaultyRun place("--end 0.01");
+  bool refused = false;
+  const Ended ended = place.traced(
+      "r", "",
+      [&](const Call& call) {
+        const bool parent = call.what == SYS_openat && call.path == ".";
+        refused = refused || parent;
+        return Action{false, parent ? EACCES : 0};
+      },
+      true);
+  INFO(place.output());
+  CHECK(refused);
+  CHECK(ended.code == 0);
 }
 TEST_CASE("I51: each of 600 calls on files may fail, and the run can be resumed", "[.extended]") {
   check_failures("--end 0.05 --threads 1", "--obj --checkpoint-every 0 --quiet", 600);

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include <sys/wait.h>
+#include <nlohmann/json.hpp>
 
+#include "catch.h"
 #include "io/new_folder.h"
 #include "traced_process.h"
 
@@ -36,6 +38,62 @@ inline const char* const kBounce = R"({
   "output": {"frame_rate": 100, "size": [32, 24], "contacts": true}
 })";
 
+/// Returns the text of run.json without what a resumed run may change: wall times, the command line and
+/// threads, how often it was resumed, factorisations, notes on resuming, and its own checksum.
+inline std::string lasting_record(const std::string& text) {
+  nlohmann::json record = nlohmann::json::parse(text);
+  record.erase("wall_seconds");
+  record.erase("check");
+  record.at("options").erase("command");
+  record.at("options").erase("threads");
+  record.at("progress").erase("resumed");
+  record.at("work").erase("factorisations");
+  std::vector<std::string> notes;
+  for (const std::string note : record.at("notes")) {
+    bool on_resuming = false;
+    for (const char* words : {"the run starts at time 0", "the run continues from an earlier state",
+                              "it is written again", "are simulated again"})
+      on_resuming = on_resuming || note.find(words) != std::string::npos;
+    if (!on_resuming) notes.push_back(note);
+  }
+  record["notes"] = notes;
+  return record.dump(1);
+}
+
+/// Returns the first lines that differ in two texts.
+inline std::string first_difference(const std::string& text, const std::string& expected) {
+  std::istringstream lines(text), expected_lines(expected);
+  std::string line, expected_line;
+  while (std::getline(expected_lines, expected_line)) {
+    if (!std::getline(lines, line)) line = "nothing";
+    if (line != expected_line) return " (" + line + " instead of " + expected_line + ")";
+  }
+  return " at its end";
+}
+
+/// Returns what differs between the files of two runs, for the message of a test; empty if nothing differs.
+inline std::string difference(const std::map<std::string, std::string>& files,
+                              const std::map<std::string, std::string>& expected) {
+  std::string text;
+  for (const auto& [name, bytes] : expected) {
+    const auto found = files.find(name);
+    if (found == files.end())
+      text += name + " is missing; ";
+    else if (found->second != bytes)
+      text += name + " differs" + (name == "run.json" ? first_difference(found->second, bytes) : "") + "; ";
+  }
+  for (const auto& entry : files)
+    if (expected.count(entry.first) == 0) text += entry.first + " is left over; ";
+  return text;
+}
+
+/// Returns whether system calls can be traced; warns if they cannot.
+inline bool tracing_works() {
+  if (can_trace()) return true;
+  WARN("skipped: this system does not let a process trace its children");
+  return false;
+}
+
 /// A folder with a scene, in which the program runs.
 class FaultyRun {
  public:
@@ -57,6 +115,8 @@ class FaultyRun {
     return fs::exists(folder_ / run) ? program("-o " + run + " " + outputs_ + " --resume", "")
                                      : this->run(run);
   }
+  /// Runs `pliant verify` for a run and returns the exit code.
+  int verify(const std::string& run) const { return shell("'" PLIANT_PROGRAM "' verify " + run); }
   /// Runs the program under ptrace, see run_traced(). Its output is that of the last command.
   Ended traced(const std::string& run, const std::string& more,
                const std::function<Action(const Call&)>& at_call, bool with_paths = false) const {
@@ -64,6 +124,19 @@ class FaultyRun {
     std::istringstream options(options_ + " " + outputs_ + " " + more);
     for (std::string word; options >> word;) words.push_back(word);
     return run_traced(words, folder_.path.string(), (folder_ / ".out").string(), with_paths, at_call);
+  }
+  /// Resumes a run that was broken. Returns what is wrong with it compared with the files of an unbroken run;
+  /// empty if all is right.
+  std::string wrong_after_resume(const std::string& run,
+                                 const std::map<std::string, std::string>& unbroken) const {
+    const int code = resume(run);
+    if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + output();
+    return difference(files(run), unbroken) + left_beside(run);
+  }
+  /// Replaces the folder of a run by a copy of that of another run.
+  void copy(const std::string& from, const std::string& to) const {
+    fs::remove_all(folder_ / to);
+    fs::copy(folder_ / from, folder_ / to, fs::copy_options::recursive);
   }
   /// Returns the output of the last command.
   std::string output() const { return bytes_of(folder_ / ".out"); }
@@ -76,21 +149,25 @@ class FaultyRun {
       if (entry.path().filename().string().rfind(run + ".part-", 0) == 0) return entry.path().string();
     return {};
   }
-  /// Returns the names of all files of a run, with their bytes; without bytes for run.json, which contains
-  /// times.
+  /// Returns the names of all files of a run, with their bytes; for run.json, its lasting_record().
   std::map<std::string, std::string> files(const std::string& run) const {
     std::map<std::string, std::string> all;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_ / run)) {
       const std::string name = entry.path().lexically_relative(folder_ / run).string();
-      all[name] = name == "run.json" || entry.is_directory() ? "" : bytes_of(entry.path());
+      if (entry.is_directory())
+        all[name];
+      else
+        all[name] = name == "run.json" ? lasting_record(bytes_of(entry.path())) : bytes_of(entry.path());
     }
     return all;
   }
 
  private:
   int program(const std::string& arguments, const std::string& before) const {
-    const std::string line = "cd '" + folder_.path.string() + "' && " + before +
-                             " '" PLIANT_PROGRAM "' run bounce.json " + arguments + " > .out 2>&1";
+    return shell(before + " '" PLIANT_PROGRAM "' run bounce.json " + arguments);
+  }
+  int shell(const std::string& command) const {
+    const std::string line = "cd '" + folder_.path.string() + "' && " + command + " > .out 2>&1";
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
@@ -98,21 +175,5 @@ class FaultyRun {
   NewFolder folder_;
   std::string options_, outputs_;
 };
-
-/// Returns what differs between the files of two runs, for the message of a test; empty if nothing differs.
-inline std::string difference(const std::map<std::string, std::string>& files,
-                              const std::map<std::string, std::string>& expected) {
-  std::string text;
-  for (const auto& [name, bytes] : expected) {
-    const auto found = files.find(name);
-    if (found == files.end())
-      text += name + " is missing; ";
-    else if (found->second != bytes)
-      text += name + " differs; ";
-  }
-  for (const auto& entry : files)
-    if (expected.count(entry.first) == 0) text += entry.first + " is left over; ";
-  return text;
-}
 
 }  // namespace faults

@@ -18,9 +18,7 @@ std::string kill_and_resume(const FaultyRun& place, long call,
     return Action{now.number == call, 0};
   });
   if (ended.code != 128 + SIGKILL) return ended.code == 0 ? "" : "the run ended with an error";
-  const int code = place.resume("broken");
-  if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + place.output();
-  return difference(place.files("broken"), unbroken) + place.left_beside("broken");
+  return place.wrong_after_resume("broken", unbroken);
 }
 
 /// Returns the calls at which to kill: `early` of them spread over the first 600, `late` over the others.
@@ -33,10 +31,7 @@ std::vector<long> calls_to_kill(long all, long early, long late) {
 }
 
 void check_kills(const FaultyRun& place, long early, long late) {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   REQUIRE(place.run("unbroken") == 0);
   const auto unbroken = place.files("unbroken");
   const Ended whole = place.traced("broken", "", [](const Call&) { return Action{}; });
@@ -66,20 +61,13 @@ TEST_CASE("I53: a run is resumed to the same files from 500 later system calls",
   check_kills(FaultyRun("--threads 2 --set /parts/0/density=500 --tolerance 1e-5", "--obj --quiet"), 0, 500);
 }
 TEST_CASE("I53: a run with --force that is killed leaves the old run whole, or continues as the new one") {
-  if (!can_trace()) {
-    WARN("skipped: this system does not let a process trace its children");
-    return;
-  }
+  if (!tracing_works()) return;
   const FaultyRun place("--end 0.05");
   const std::string replace_options = "--set /parts/0/density=500", replace = "--force " + replace_options;
   REQUIRE(place.run("old", "--obj") == 0);
   REQUIRE(place.run("new", replace) == 0);
   const auto old_files = place.files("old"), new_files = place.files("new");
-  const auto restore = [&] {
-    fs::remove_all(place / "broken");
-    fs::copy(place / "old", place / "broken", fs::copy_options::recursive);
-  };
-  restore();
+  place.copy("old", "broken");
   long begins = 0, ends = 0;  // the calls between which the program uses the folder
   place.traced(
       "broken", replace,
@@ -92,7 +80,7 @@ TEST_CASE("I53: a run with --force that is killed leaves the old run whole, or c
   REQUIRE(begins > 0);
   long kept = 0;
   for (long i = 0; i <= 40; ++i) {
-    restore();
+    place.copy("old", "broken");
     const long at = begins + (ends - begins) * i * i / 1600;  // most of them at the beginning
     INFO("killed at call " << at << " of about " << ends);
     place.traced("broken", replace, [at](const Call& call) { return Action{call.number == at, 0}; });

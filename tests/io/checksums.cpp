@@ -56,7 +56,8 @@ TEST_CASE("I55: checksums name the first damaged row of a table, or of the check
   CHECK(reader.states() == 10);
   CHECK(reader.whole_states() == 10);
   CHECK(reader.rows(1, 10) == 13);
-  CHECK(reader.damage(10).empty());
+  CHECK(reader.inspect().damage.empty());
+  CHECK(reader.inspect().undamaged == 10);
   CHECK(crc32_text(reader.checksums(10)[0].second) ==
         crc32_text(crc32_after(0, bytes_of(folder / "a.npy").data() + 128, 10 * 3 * 8)));
 
@@ -64,7 +65,8 @@ TEST_CASE("I55: checksums name the first damaged row of a table, or of the check
                     sums = bytes_of(folder / "sums.npy");
   flip_bit(folder / "a.npy", 128 + 6 * 24 + 3);
   flip_bit(folder / "b.npy", 128 + 10 * 16);  // row 10 is one of the rows 9 to 11 of state 7
-  const std::vector<std::string> damage = reader.damage(10);
+  const std::vector<std::string> damage = reader.inspect().damage;
+  CHECK(reader.inspect().undamaged == 6);
   REQUIRE(damage.size() == 2);
   CHECK(damage[0].find("a.npy is damaged at row 6: its checksum does not match") != std::string::npos);
   CHECK(damage[1].find("b.npy is damaged at row 9, or between this row and row 12: its") !=
@@ -72,13 +74,15 @@ TEST_CASE("I55: checksums name the first damaged row of a table, or of the check
   set_bytes(folder / "a.npy", a);
   set_bytes(folder / "b.npy", b);
   flip_bit(folder / "sums.npy", 128 + 4 * 32 + 8);
-  REQUIRE(reader.damage(10).size() == 1);
-  CHECK(reader.damage(10)[0].find("sums.npy is damaged at row 4") != std::string::npos);
+  CHECK(reader.inspect().undamaged == 4);
+  REQUIRE(reader.inspect().damage.size() == 1);
+  CHECK(reader.inspect().damage[0].find("sums.npy is damaged at row 4") != std::string::npos);
   set_bytes(folder / "sums.npy", sums);
 
   fs::resize_file(folder / "b.npy", b.size() - 20);  // the last whole row is row 10, of state 7
   CHECK(reader.whole_states() == 7);
-  CHECK(reader.damage(7).empty());
+  CHECK(reader.inspect().damage.empty());
+  CHECK(reader.inspect().undamaged == 7);
   CHECK_THROWS_AS(ChecksumReader(folder.path, "sums.npy", {{"a.npy", true}}), RecordingMismatch);
 }
 
@@ -91,12 +95,17 @@ TEST_CASE("of two checkpoints the newest that is undamaged and fits is found") {
   for (int i = 0; i < 3; ++i) {
     simulation.step(1e-3);
     states.push_back(simulation.state());
-    write_checkpoint(folder.path, {7, simulation.state()});
+    RunWork work;
+    work.steps.steps = i + 1;
+    work.parts.mass_matrices = 4 * (i + 1);
+    write_checkpoint(folder.path, {7, simulation.state(), work});
   }
   auto found_time = [&](std::int64_t rows, double end) {
     const FoundCheckpoint found = find_checkpoint(folder.path, model, rows, end);
     if (!found.checkpoint) return -1.0;
     const State& state = found.checkpoint->state;
+    CHECK(found.checkpoint->work.steps.steps == state.step);
+    CHECK(found.checkpoint->work.parts.mass_matrices == 4 * state.step);
     for (const State& known : states)
       if (known.time() == state.time()) CHECK(hash(known) == hash(state));
     return state.time();
@@ -110,7 +119,7 @@ TEST_CASE("of two checkpoints the newest that is undamaged and fits is found") {
   CHECK(found_time(7, 1) == states[1].time());
   CHECK(find_checkpoint(folder.path, model, 7, 1).damage.find("checkpoint_1.npy is damaged") !=
         std::string::npos);
-  write_checkpoint(folder.path, {7, states[0]});  // replaces the damaged one
+  write_checkpoint(folder.path, {7, states[0], {}});  // replaces the damaged one
   CHECK(find_checkpoint(folder.path, model, 7, 1).damage.empty());
   CHECK(found_time(7, 1) == states[1].time());
   remove_checkpoints(folder.path);

@@ -1,12 +1,11 @@
 // Recordings: states are read back to the last bit, damage is detected, and states between steps are
 // accurate.
+#include <pliant/io/layout.h>
 #include <pliant/io/recording.h>
 
 #include <cmath>
 #include <limits>
 #include <memory>
-
-#include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "new_folder.h"
@@ -154,26 +153,6 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
     CHECK(hash(recording.state(1)) == hash(states[1]));
     CHECK(hash(recording.state(3)) == hash(states[3]));
   }
-}
-
-TEST_CASE("the layout names every column") {
-  const NewFolder folder;
-  const auto scene = pulled_scene();
-  record(folder.path, *scene, 3, 1);
-  const nlohmann::json layout = nlohmann::json::parse(bytes_of(folder / kLayoutFile));
-  const auto& tables = layout.at("tables");
-  for (const char* table : {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile}) {
-    const NpyReader reader(folder / table);
-    CHECK(tables.at(table).size() ==
-          static_cast<std::size_t>(reader.columns() == kNpyVector ? 1 : reader.columns()));
-  }
-  const auto& first = tables.at(kCoordinatesFile).at(0);
-  CHECK(first.at("name") == "blob.c.x");
-  CHECK(first.at("part") == "blob");
-  CHECK(first.at("coordinate") == "c.x");
-  CHECK(first.at("unit") == "m");
-  CHECK(tables.at(kVelocitiesFile).at(3).at("unit") == "rad/s");
-  CHECK(layout.at("frames").at("rate") == 50);
 }
 
 TEST_CASE("I53: after a kill the shortest table determines the number of states") {

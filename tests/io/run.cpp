@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile,
-                                    kTrajectoryFile};
+constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile,
+                                    kModesFile, kWorkFile,        kTrajectoryFile};
 
 std::string results_of(const fs::path& folder) {
   std::string bytes;
@@ -144,6 +144,8 @@ TEST_CASE("I53: a run that is killed at any time can be resumed to identical fil
   CHECK_FALSE(fs::exists(killed / kTrajectoryFile));
   REQUIRE(run(*long_scene(), killed, {Existing::resume}));
   CHECK(results_of(killed) == results_of(unbroken));
+  for (const char* key : {"work", "monitors", "notes", "files", "checksums"})
+    CHECK(record_of(killed).at(key) == record_of(unbroken).at(key));
 }
 
 TEST_CASE("a complete run continues to a later end as if it had never stopped") {
@@ -651,10 +653,10 @@ TEST_CASE("run.json reports steps, evaluations, skipped computations and files")
   CHECK(record.requested_step == 0.01);
   CHECK(record.time == 0.335 / 34 * 34);
   CHECK(record.notes.size() == 1);
-  CHECK(record.step_counters.evaluations == 4 * 34);
-  CHECK(record.counters.jacobian_points == 0);
-  CHECK(record.counters.rate_points == 0);
-  CHECK(record.counters.surfaces == 0);
+  CHECK(record.work.steps.evaluations == 4 * 34);
+  CHECK(record.work.parts.jacobian_points == 0);
+  CHECK(record.work.parts.rate_points == 0);
+  CHECK(record.work.parts.surfaces == 0);
   CHECK_FALSE(record.skipped.empty());
   CHECK(record.stable_step ==
         Approx(0.5 / std::sqrt(5.01)));  // no stiffness limits it; the top rotates by 0.5 rad in this time

@@ -2,6 +2,8 @@
 // that was not completed is completed or started again.
 #include <pliant/io/run/run_folder.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "catch.h"
@@ -20,6 +22,17 @@ namespace {
 
 constexpr const char* kFiles[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile,
                                   kModesFile, kChecksumsFile,   kTrajectoryFile};
+
+/// Holds the lock of a file, as the process that writes it does.
+struct HeldLock {
+  explicit HeldLock(const fs::path& file) : descriptor(::open(file.c_str(), O_RDWR)) {
+    REQUIRE(::flock(descriptor, LOCK_EX | LOCK_NB) == 0);
+  }
+  ~HeldLock() { ::close(descriptor); }
+  HeldLock(const HeldLock&) = delete;
+  HeldLock& operator=(const HeldLock&) = delete;
+  int descriptor;
+};
 
 /// Texts for the user.
 struct Notes : Progress {
@@ -102,18 +115,37 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "the lock of an unfinished folder decides whether it is removed, and not the number of its process") {
+  const NewFolder folder;
+  const fs::path alive = folder / ("r.part-" + std::to_string(ended_process()) + "-0"),
+                 killed = folder / ("r.part-" + std::to_string(::getppid()) + "-0"),
+                 empty = folder / ("r.part-" + std::to_string(::getppid()) + "-1");
+  for (const fs::path& unfinished : {alive, killed, empty}) fs::create_directory(unfinished);
+  set_bytes(alive / kLockFile, "1");
+  set_bytes(killed / kLockFile, "1");
+  set_bytes(killed / kNewRunFile, "{}");
+  const HeldLock run_elsewhere(alive / kLockFile);
+  run(folder / "r", Existing::refuse);
+  CHECK(fs::exists(alive));
+  CHECK_FALSE(fs::exists(killed));
+  CHECK_FALSE(fs::exists(empty));
+}
+
 TEST_CASE("unfinished files are removed, but not frames that a living process writes") {
   const NewFolder folder;
   const fs::path out = folder / "r";
   run(out, Existing::refuse);
   const std::string ended = std::to_string(ended_process()), living = std::to_string(::getppid());
   fs::create_directory(out / kFrameFolder);
-  const fs::path stale = out / kFrameFolder / ("frame_000001.png.part-" + ended + "-0"),
+  const fs::path locked = out / kFrameFolder / ("frame_000003.png.part-" + ended + "-0"),
+                 stale = out / kFrameFolder / ("frame_000001.png.part-" + ended + "-0"),
                  fresh = out / kFrameFolder / ("frame_000002.png.part-" + living + "-0"),
                  other = out / kFrameFolder / ("cat.png.part-" + ended + "-0"),
                  table = out / ("trajectory.csv.part-" + living + "-0"),
                  beside = folder / ("r.part-" + ended + "-0"), mine = folder / ("r.part-" + ended + "-1");
-  for (const fs::path& file : {stale, fresh, other, table}) set_bytes(file, "x");
+  for (const fs::path& file : {locked, stale, fresh, other, table}) set_bytes(file, "x");
+  const HeldLock writer(locked);  // as of a process on another machine
   for (const fs::path& unfinished : {beside, mine}) {
     fs::create_directory(unfinished);
     set_bytes(unfinished / kLockFile, ended);
@@ -122,6 +154,7 @@ TEST_CASE("unfinished files are removed, but not frames that a living process wr
   run(out, Existing::resume);
   CHECK_FALSE(fs::exists(stale));
   CHECK(fs::exists(fresh));
+  CHECK(fs::exists(locked));
   CHECK(fs::exists(other));
   CHECK_FALSE(fs::exists(table));  // only a run with the lock writes this file
   fs::remove_all(out);

@@ -31,6 +31,12 @@ struct CheckedTable {
   bool one_row;      ///< whether each state has exactly one row; otherwise the checksums count its rows
 };
 
+/// The result of a comparison of tables with their checksums.
+struct Inspection {
+  std::int64_t undamaged = 0;       ///< number of first states whose rows are all as they were written
+  std::vector<std::string> damage;  ///< one text per damaged file, with its first damaged row or rows
+};
+
 /// Returns the columns of a table of checksums, in order.
 std::vector<Column> checksum_columns(const std::vector<CheckedTable>& tables);
 
@@ -82,9 +88,9 @@ class ChecksumReader {
   std::int64_t rows(std::size_t table, std::int64_t states) const;
   /// Returns the checksums of the tables after the first `states` states.
   Checksums checksums(std::int64_t states) const;
-  /// Compares the rows of the first `states` states (at most whole_states()). Returns one text per damaged
-  /// file, with its first damaged row or rows; empty if all numbers are as they were written.
-  std::vector<std::string> damage(std::int64_t states) const;
+  /// Compares the rows of all states that the tables contain with their checksums. Rows that are missing at
+  /// the end of a table are not damage.
+  Inspection inspect() const;
 
  private:
   struct Entry {

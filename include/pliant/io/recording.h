@@ -1,9 +1,9 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
-// joints) and a check number. supports.npy contains the contact cache of scenes with contact, and
-// checksums.npy the checksums of these tables. A recorded state is the initial state or a state after a step,
-// never an interpolated one. A run resumed from it reproduces all later states bit by bit. layout.json names
-// every column.
+// joints) and a check number, work.npy the work up to each state. supports.npy contains the contact cache of
+// scenes with contact, and checksums.npy the checksums of these tables. A recorded state is the initial state
+// or a state after a step, never an interpolated one. A run resumed from it reproduces all later states bit
+// by bit. layout.json (layout.h) names every column.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,8 @@
 
 #include <pliant/body/model.h>
 #include <pliant/io/checksums.h>
-#include <pliant/io/format/column.h>
 #include <pliant/io/format/npy.h>
-#include <pliant/io/frame_schedule.h>
+#include <pliant/io/work_row.h>
 
 namespace pliant {
 
@@ -25,14 +24,10 @@ class RecordingMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes layout.json: names, units and meanings of the columns of all tables, and the times of frames.
-/// trajectory: columns of trajectory.csv. contacts: whether the run records contacts. Throws
-/// std::system_error.
-void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
-                  const std::vector<Column>& trajectory, bool contacts = false);
-
 /// Returns the tables of states that checksums.npy checks.
 std::vector<CheckedTable> checked_tables(const Model& model);
+/// Opens the checksums of these tables, checksums.npy. Throws std::system_error, RecordingMismatch.
+ChecksumReader state_checksums(const std::filesystem::path& folder, const Model& model);
 
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {
@@ -44,8 +39,8 @@ class RecordingWriter {
   /// std::system_error, RecordingMismatch.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
-  /// Appends a state, which stays in memory until flush().
-  void append(const State& state);
+  /// Appends a state and the work up to it, which stay in memory until flush().
+  void append(const State& state, const RunWork& work = {});
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.
   void flush(bool to_disk = false);
@@ -56,7 +51,7 @@ class RecordingWriter {
 
  private:
   struct Tables {
-    NpyWriter times, coordinates, velocities, modes;
+    NpyWriter times, coordinates, velocities, modes, work;
     std::optional<NpyWriter> contact_cache;
   };
   RecordingWriter(Tables tables, ChecksumWriter checksums);
@@ -73,9 +68,8 @@ class Recording {
   /// or its columns differ from those of the model. The numbers are not compared with their checksums.
   Recording(const std::filesystem::path& folder, const Model& model);
 
-  /// Compares all recorded numbers with their checksums. Returns one text per damaged file; empty if all
-  /// numbers are as they were written.
-  std::vector<std::string> damage() const { return checksums_.damage(rows()); }
+  /// Compares all recorded numbers with their checksums.
+  Inspection inspect() const { return checksums_.inspect(); }
   /// Returns the checksums of all tables after the first `states` states.
   Checksums checksums(std::int64_t states) const { return checksums_.checksums(states); }
 
@@ -84,6 +78,8 @@ class Recording {
   /// Returns a recorded state, exact to the last bit. Throws RecordingMismatch if its check number does not
   /// match.
   State state(std::int64_t row) const;
+  /// Returns the work up to a recorded state.
+  RunWork work(std::int64_t row) const;
   /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
   /// With error control, the state between two recorded states is the result of a shorter step of dop853
@@ -95,7 +91,7 @@ class Recording {
 
  private:
   const Model* model_;
-  NpyReader coordinates_, velocities_, modes_;
+  NpyReader coordinates_, velocities_, modes_, work_;
   std::optional<NpyReader> contact_cache_;
   ChecksumReader checksums_;
   std::vector<double> times_;

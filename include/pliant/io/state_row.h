@@ -2,23 +2,28 @@
 // of modes.npy per state, and one row of supports.npy per cached contact.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <pliant/body/model.h>
 #include <pliant/body/state.h>
-#include <pliant/io/format/column.h>
+#include <pliant/io/table_columns.h>
 
 namespace pliant {
 
-/// Returns the columns of a moving part in q.npy, in order.
+/// Returns the columns of a part in q.npy, in order, with "*" for its name; none if it does not move.
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part);
-/// Returns the columns of a moving part in v.npy, in order.
+/// Returns the columns of a part in v.npy, in order, with "*" for its name; none if it does not move.
 std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
-/// Returns the columns of modes.npy, in order. in_clusters: whether the parts step in clusters
-/// (simulate/clusters.h); there are then columns for State::step_memory.
-std::vector<Column> mode_columns_of(const Model& model, bool in_clusters);
+/// Return the columns of q.npy and of v.npy. The model must outlive them.
+TableColumns coordinate_columns(const Model& model);
+TableColumns velocity_columns(const Model& model);
+/// Returns the columns of modes.npy. in_clusters: whether the parts step in clusters (simulate/clusters.h);
+/// there are then columns for State::step_memory. The model must outlive them.
+TableColumns mode_columns(const Model& model, bool in_clusters);
+/// Returns the number of columns of modes.npy.
+std::size_t mode_count(const Model& model, bool in_clusters);
 
 /// Numbers of the two columns of modes.npy that give the rows of a state in supports.npy: its first row, and
 /// one past its last row.

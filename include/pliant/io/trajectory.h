@@ -25,8 +25,8 @@
 #include <vector>
 
 #include <pliant/body/placed_point.h>
-#include <pliant/io/format/column.h>
 #include <pliant/io/recording.h>
+#include <pliant/io/table_columns.h>
 #include <pliant/scene/scene.h>
 #include <pliant/simulate/simulation.h>
 
@@ -40,11 +40,15 @@ class TrajectoryTable {
   /// energy balance. Both must outlive the table.
   TrajectoryTable(const Scene& scene, const Simulation& simulation);
 
-  std::vector<Column> columns() const;
+  /// Returns the columns of the table, which must outlive them.
+  TableColumns columns() const;
   /// Computes the row of a state: one number for each of columns(), in the same order.
   void row(const State& state, std::vector<double>& numbers);
 
  private:
+  std::vector<Column> part_columns(std::size_t part) const;
+  std::vector<Column> joint_columns(std::size_t joint) const;
+  std::vector<Column> total_columns() const;
   void add_part(const State& state, std::size_t part, std::vector<double>& numbers) const;
 
   const Scene* scene_;

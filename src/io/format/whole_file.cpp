@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <pliant/io/file_fault.h>
@@ -31,6 +32,9 @@ WholeFile::WholeFile(std::filesystem::path target) : target_(std::move(target)) 
     descriptor_ = retry([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
     if (descriptor_ < 0 && (errno != EEXIST || attempt >= 1000)) throw_file_fault(errno, "write", target_);
   }
+  // Shows other processes, also on other machines, that this file is being written. Some file systems have no
+  // locks; the file is written there too.
+  retry([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); });
 }
 
 WholeFile::~WholeFile() {

@@ -6,6 +6,7 @@
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/format/ply.h>
 #include <pliant/io/format/whole_file.h>
+#include <pliant/io/layout.h>
 #include <pliant/io/run/checkpoint.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/run_files.h>
@@ -25,6 +26,23 @@ void require_same(const char* name, const Value& recorded, const Value& now, con
   else
     message += recorded + " and is now " + now;
   throw RecordingMismatch(message + hint);
+}
+
+/// Returns the counts of the first evaluation with a new workspace, at the state of a simulation, that a
+/// later evaluation there does not repeat. A resumed run counts them twice: at its start, and when it is
+/// resumed.
+Counters first_evaluation(const Simulation& simulation) {
+  Workspace<double> work;
+  auto evaluated = [&] {
+    const State& state = simulation.state();
+    simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
+    RunWork sum;
+    for (const PartWorkspace<double>& part : work.parts) sum.parts += part.counters;
+    for (const RigidWorkspace& island : work.rigid) sum.parts += island.counters;
+    return sum;
+  };
+  const RunWork once = evaluated(), twice = evaluated();
+  return continued({}, once, continued({}, twice, once)).parts;
 }
 
 }  // namespace
@@ -77,8 +95,8 @@ void Run::mend_inputs() {
 }
 
 void Run::write_layout(const std::filesystem::path& folder) {
-  pliant::write_layout(folder, simulation_->model(), schedule_,
-                       TrajectoryTable(*scene_, *simulation_).columns(), scene_->contacts);
+  const TrajectoryTable trajectory(*scene_, *simulation_);
+  pliant::write_layout(folder, simulation_->model(), schedule_, trajectory.columns(), scene_->contacts);
   add_whole_file(folder, kLayoutFile);
 }
 
@@ -106,8 +124,10 @@ void Run::begin_recording(const StableStep& stable) {
   if (scene_->contacts)
     contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(place));
   record_state();
+  written_notes_ = record_.notes.size();  // run.json, with all notes, is written below
   flush(true);
   update_record();
+  record_.durable_states = record_.states;
   write_run_record(place / kRunFile, record_);
   folder_->begin_new_run();
   open_tables(writer_->rows());  // at their new paths
@@ -131,67 +151,87 @@ void Run::check_resumable() const {
   if (scene_->tolerance == 0) require_same("the step", record_.requested_step, scene_->step);
 }
 
-/// Throws RecordingMismatch, naming the files, if numbers of the first `states` recorded states have changed
-/// since they were written.
-void Run::check_numbers(const Recording& recorded, std::int64_t states) const {
-  std::vector<std::string> damage = recorded.damage();
-  if (scene_->contacts)
-    for (std::string& text : contact_checksums(folder_->path()).damage(states))
-      damage.push_back(std::move(text));
-  if (damage.empty()) return;
-  std::string message = "cannot resume this run: ";
-  for (const std::string& text : damage) message += (&text == damage.data() ? "" : "; ") + text;
-  throw RecordingMismatch(message + ". Restore the damaged file, or simulate again with --force");
+/// Compares the recorded numbers with their checksums. After a power cut, the last states may have lost
+/// numbers that were not yet on the disk; these states are removed, with a note. Throws RecordingMismatch,
+/// naming the files, if numbers of earlier states are not as they were written.
+void Run::remove_lost_states() {
+  Inspection found = state_checksums(folder_->path(), simulation_->model()).inspect();
+  if (scene_->contacts) {
+    Inspection contacts = contact_checksums(folder_->path()).inspect();
+    found.undamaged = std::min(found.undamaged, contacts.undamaged);
+    found.damage.insert(found.damage.end(), contacts.damage.begin(), contacts.damage.end());
+  }
+  if (found.damage.empty()) return;
+  std::string texts;
+  for (const std::string& text : found.damage) texts += (texts.empty() ? "" : "; ") + text;
+  if (found.undamaged < record_.durable_states)
+    throw RecordingMismatch("cannot resume this run: " + texts +
+                            ". Restore the damaged file, or simulate again with --force");
+  note(
+      "the last recorded states were not yet on the disk when the run was interrupted, and are simulated "
+      "again: " +
+      texts);
+  open_tables(found.undamaged);
+  writer_.reset();
+  contacts_.reset();
 }
 
-/// Sets the simulation to a checkpoint that is later than the first `keep` recorded states. Returns false if
+/// The state from which a resumed run continues.
+struct Run::Continuation {
+  std::int64_t keep = 0;       ///< number of recorded states that an uninterrupted run would record
+  std::optional<State> state;  ///< none: the initial state
+  RunWork work;                ///< of the run up to this state
+};
+
+/// Sets a continuation to a checkpoint that is later than the first `keep` recorded states. Returns false if
 /// there is none.
-bool Run::continue_from_checkpoint(const Recording& recorded, std::int64_t keep) {
-  if (keep == 0) return false;
-  FoundCheckpoint found = find_checkpoint(folder_->path(), simulation_->model(), keep, schedule_.end());
+bool Run::find_saved_state(const Recording& recorded, Continuation& from) {
+  FoundCheckpoint found = find_checkpoint(folder_->path(), simulation_->model(), from.keep, schedule_.end());
   if (!found.damage.empty()) note(found.damage + "; the run continues from an earlier state");
-  const double last = recorded.time(keep - 1);
-  if (!found.checkpoint || !(found.checkpoint->state.time() > last)) return false;
-  recorded_time_ = last;
-  simulation_->set_state(std::move(found.checkpoint->state));
+  if (!found.checkpoint || !(found.checkpoint->state.time() > recorded.time(from.keep - 1))) return false;
+  from.state = std::move(found.checkpoint->state);
+  from.work = found.checkpoint->work;
   return true;
 }
 
-/// Sets the simulation to the last recorded state that an uninterrupted run would reach, or to a later
-/// checkpoint. keep: on call, the number of recorded states; on return, the number of these that an
-/// uninterrupted run would record.
-void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
+/// Returns the last recorded state that an uninterrupted run would reach, or a later checkpoint.
+Run::Continuation Run::find_continuation(const Recording& recorded) {
+  Continuation from;
+  from.keep = recorded.rows();
+  if (scene_->contacts) from.keep = std::min(from.keep, contact_checksums(folder_->path()).whole_states());
   // With error control, the last step may have been shortened by the end of the run. If the new end is later,
   // this step is removed and repeated.
-  if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
+  if (scene_->tolerance > 0 && from.keep > 1 && recorded.time(from.keep - 1) >= record_.end &&
       scene_->end > record_.end)
-    --keep;
-  if (keep == 0 || continue_from_checkpoint(recorded, keep)) return;
-  State last = recorded.state(keep - 1);
+    --from.keep;
+  if (from.keep == 0 || find_saved_state(recorded, from)) return from;
+  State last = recorded.state(from.keep - 1);
+  from.work = recorded.work(from.keep - 1);
   if (last.time() > schedule_.end() * (1 + 1e-9))
     throw RecordingMismatch("cannot resume this run: it has reached t = " + number_text(last.time()) +
                             " s, beyond the requested end of " + number_text(scene_->end) + " s");
   // An uninterrupted run does not record a state that was recorded only because the run ended there.
   const bool in_unbroken =
-      scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
-                            : schedule_.records(last.step);
-  if (in_unbroken)
-    recorded_time_ = last.time();
-  else
-    --keep;
-  simulation_->set_state(std::move(last));
+      scene_->tolerance > 0
+          ? schedule_.records(from.keep > 1 ? recorded.time(from.keep - 2) : 0, last.time(), last.h)
+          : schedule_.records(last.step);
+  if (!in_unbroken) --from.keep;
+  from.state = std::move(last);
+  return from;
 }
 
-/// Includes the energies of the first `states` recorded states, as the session that recorded them did.
-void Run::add_recorded_energies(const Recording& recorded, std::int64_t states) {
-  Workspace<double> work;
+/// Includes the first `states` recorded states in the run record, as the session that recorded them did. The
+/// notes of this session that were written to run.json are not repeated.
+void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
+  record_.max_gap = record_.max_depth = record_.max_energy = 0;
   for (std::int64_t row = 0; row < states; ++row) {
-    const State state = recorded.state(row);
-    Ledger ledger = simulation_->dynamics().ledger(state, work);
-    ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
-    energies_->add(ledger, state.time());
+    simulation_->set_state(recorded.state(row));
+    last_recorded_ = simulation_->state();
+    recorded_time_ = simulation_->time();
+    const Ledger ledger = simulation_->ledger();
+    energies_->add(ledger, recorded_time_);
+    observe_state(ledger);
   }
-  if (states > 0) record_energies();
 }
 
 void Run::resume_recording(const StableStep& stable) {
@@ -206,17 +246,19 @@ void Run::resume_recording(const StableStep& stable) {
   }
   mend_inputs();
   write_layout(folder_->path());
+  remove_lost_states();
   const Recording recorded = recording();
-  std::int64_t keep = recorded.rows();
-  if (scene_->contacts) keep = std::min(keep, contact_checksums(folder_->path()).whole_states());
-  check_numbers(recorded, keep);
-  set_last_state(recorded, keep);
-  add_recorded_energies(recorded, keep);
-  last_recorded_ = simulation_->state();
-  open_tables(keep);
-  if (keep == 0 && simulation_->time() == 0) record_state();
-  earlier_steps_ = record_.step_counters;
-  earlier_counters_ = record_.counters;
+  Continuation from = find_continuation(recorded);
+  observe_recorded(recorded, from.keep);
+  open_tables(from.keep);
+  if (from.state) {
+    simulation_->set_state(std::move(*from.state));
+    earlier_work_ = from.work;
+    earlier_work_.steps.factorisations = record_.work.steps.factorisations;
+    work_at_start_ = RunWork{simulation_->step_counters(), simulation_->counters()};
+    work_at_start_->parts += first_evaluation(*simulation_);
+  }
+  if (from.keep == 0 && simulation_->time() == 0) record_state();
   ++record_.resumed;
   describe(stable);
   save(true);

@@ -1,6 +1,6 @@
 // A checkpoint is a vector in NumPy's format: the number of recorded states, the number of cached contacts,
-// then time, coordinates, velocities, the row of modes.npy, the rows of supports.npy, and the CRC-32 of all
-// numbers before.
+// then time, the row of work.npy, coordinates, velocities, the row of modes.npy, the rows of supports.npy,
+// and the CRC-32 of all numbers before.
 #include <pliant/io/run/checkpoint.h>
 
 #include <array>
@@ -32,9 +32,10 @@ std::vector<double> numbers_of(const Checkpoint& checkpoint) {
   const State& state = checkpoint.state;
   std::vector<double> numbers{static_cast<double>(checkpoint.states),
                               static_cast<double>(state.contact_cache.size()), state.time()};
+  std::vector<double> row = work_row(checkpoint.work);
+  numbers.insert(numbers.end(), row.begin(), row.end());
   numbers.insert(numbers.end(), state.q.begin(), state.q.end());
   numbers.insert(numbers.end(), state.v.begin(), state.v.end());
-  std::vector<double> row;
   write_modes(state, static_cast<std::int64_t>(state.contact_cache.size()), row);
   numbers.insert(numbers.end(), row.begin(), row.end());
   for (const CachedContact& contact : state.contact_cache) {
@@ -59,13 +60,15 @@ std::vector<double> read_numbers(const fs::path& path) {
 /// Returns a checkpoint from the numbers of a file; none if they do not fit the model.
 std::optional<Checkpoint> checkpoint_of(const std::vector<double>& numbers, const Model& model) {
   const auto n_q = static_cast<std::size_t>(model.n_q()), n_v = static_cast<std::size_t>(model.n_v());
-  const std::size_t n_contacts = static_cast<std::size_t>(numbers[1]),
-                    fixed = 3 + n_q + n_v + n_contacts * cached_contact_size() + 1;
+  const std::size_t n_contacts = static_cast<std::size_t>(numbers[1]), n_work = work_columns().size(),
+                    fixed = 3 + n_work + n_q + n_v + n_contacts * cached_contact_size() + 1;
   if (numbers.size() < fixed) return std::nullopt;
   Checkpoint checkpoint;
   checkpoint.states = static_cast<std::int64_t>(numbers[0]);
   State& state = checkpoint.state;
   const double* next = numbers.data() + 3;
+  checkpoint.work = read_work_row(next);
+  next += n_work;
   state.q = Eigen::Map<const VecX<double>>(next, model.n_q());
   state.v = Eigen::Map<const VecX<double>>(next + n_q, model.n_v());
   next += n_q + n_v;

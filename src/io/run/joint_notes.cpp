@@ -148,17 +148,18 @@ std::string open_joints_note(const Simulation& simulation) {
          " '" + joint.name() + "', by " + rounded_text(model.gap(simulation.state(), widest)) + " m";
 }
 
-std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first) {
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first,
+                                      const std::vector<std::string>& earlier) {
   const std::vector<ImpulseOnEngage>& all = simulation.engage_impulses();
   auto joint_of = [&](const ImpulseOnEngage& impulse) -> const JointModel& {
     return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];
   };
-  auto reported = [&](std::size_t i) {  // whether an earlier jump of this joint's path has been reported
-    return std::any_of(
-        all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
-        [&](const ImpulseOnEngage& other) { return other.of_path && other.joint == all[i].joint; });
-  };
   std::vector<std::string> notes;
+  auto reported = [&](const std::string& subject) {
+    auto has_subject = [&](const std::string& note) { return note.find(subject) != std::string::npos; };
+    return std::any_of(earlier.begin(), earlier.end(), has_subject) ||
+           std::any_of(notes.begin(), notes.end(), has_subject);
+  };
   for (std::size_t i = first; i < all.size();) {
     std::size_t end = i, largest = i;
     for (; end < all.size() && all[end].time == all[i].time && all[end].of_path == all[i].of_path; ++end)
@@ -166,12 +167,13 @@ std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t 
         largest = end;
     const JointModel& joint = joint_of(all[largest]);
     const auto count = static_cast<int>(end - i);
-    if (!all[i].of_path || !reported(largest))
-      notes.push_back(
-          "at t = " + rounded_text(all[i].time) + " s " +
-          (all[i].of_path ? "the velocity of a prescribed path jumps: " : "") + joint.joint->type() + " '" +
-          joint.joint->name() + "' " + (all[i].of_path ? "follows" : "engages") + " with an impulse of " +
-          text_of(all[largest], joint) + (count > 1 ? ", the largest of " + count_text(count, "joint") : ""));
+    const std::string subject =
+        std::string(all[i].of_path ? "the velocity of a prescribed path jumps: " : "") + joint.joint->type() +
+        " '" + joint.joint->name() + "' " + (all[i].of_path ? "follows" : "engages");
+    if (!all[i].of_path || !reported(subject))
+      notes.push_back("at t = " + rounded_text(all[i].time) + " s " + subject + " with an impulse of " +
+                      text_of(all[largest], joint) +
+                      (count > 1 ? ", the largest of " + count_text(count, "joint") : ""));
     i = end;
   }
   return notes;

@@ -15,23 +15,18 @@
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/run/scheduled_step.h>
 #include <pliant/io/run/skipped.h>
+#include <pliant/io/run/wall_clock.h>
 #include <pliant/io/trajectory.h>
 #include <pliant/part/mesh/surface_turn.h>
 
 namespace pliant {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::chrono::milliseconds kFlushEvery{250};
 constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
 /// The search for a remedy takes at most this multiple of the wall time of the failed run. It takes at least
 /// RunOptions::remedy_seconds, and at most kMaxRemedyShare times that.
 constexpr double kRemedyShare = 3, kMaxRemedyShare = 10;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Returns the simulation of a scene. Throws std::invalid_argument for inconsistent settings of the scene.
 std::unique_ptr<Simulation> prepare(Scene& scene, const RunOptions& options) {
@@ -74,7 +69,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
       options_(std::move(options)),
       progress_(&progress),
       schedule_(schedule_of(scene)),
-      started_(Clock::now()) {
+      started_(WallClock::now()) {
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_);
   energies_.emplace(simulation_->model());
@@ -90,7 +85,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
     resume_recording(stable);
   else
     begin_recording(stable);
-  checkpointed_ = Clock::now();
+  checkpointed_ = WallClock::now();
 }
 
 Run::~Run() = default;
@@ -149,6 +144,10 @@ void Run::note(const std::string& text) {
   progress_->note(text);
 }
 
+void Run::note_once(const std::string& text) {
+  if (std::find(record_.notes.begin(), record_.notes.end(), text) == record_.notes.end()) note(text);
+}
+
 /// Adds notes on redundant constraints, if the set of acting joints has changed since the last call; each
 /// text at most once.
 void Run::note_redundancy() {
@@ -157,11 +156,12 @@ void Run::note_redundancy() {
   if (acting == reported_acting_) return;
   reported_acting_ = std::move(acting);
   for (const std::string& text : redundancy_notes(*simulation_))
-    if (reported_redundant_.insert(text).second) note(text);
+    if (reported_redundant_.insert(text).second) note_once(text);
 }
 
 void Run::note_engagements() {
-  for (const std::string& text : engage_notes(*simulation_, reported_impulses_)) note(text);
+  for (const std::string& text : engage_notes(*simulation_, reported_impulses_, record_.notes))
+    note_once(text);
   reported_impulses_ = simulation_->engage_impulses().size();
 }
 
@@ -173,12 +173,12 @@ void Run::note_turns() {
     const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
     if (!(turn > kMaxLinearRotation)) continue;
     reported_turned_.insert(m.part->name());
-    note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
-         m.part->name() + "' rotate some of its surface by " + rounded_text(turn) +
-         " rad; a local law that is linear in the displacements is accurate up to about " +
-         rounded_text(kMaxLinearRotation) +
-         " rad; use a law that is valid for all rotations (neo_hookean, st_venant_kirchhoff, corotated, "
-         "neo_hookean_membrane, st_venant_kirchhoff_membrane)");
+    note_once("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
+              m.part->name() + "' rotate some of its surface by " + rounded_text(turn) +
+              " rad; a local law that is linear in the displacements is accurate up to about " +
+              rounded_text(kMaxLinearRotation) +
+              " rad; use a law that is valid for all rotations (neo_hookean, st_venant_kirchhoff, corotated, "
+              "neo_hookean_membrane, st_venant_kirchhoff_membrane)");
   }
 }
 
@@ -191,9 +191,9 @@ void Run::note_ground() {
     if (m.q0 < 0 || !scene_->appearance[i].visible) continue;
     if (!(simulation_->state().q[m.q0 + 2] < *scene_->ground.height - m.part->size())) continue;
     reported_ground_ = true;
-    note("at t = " + rounded_text(simulation_->time()) + " s part '" + m.part->name() +
-         "' is below the drawn ground, which is not solid; add a plane at its height, " +
-         rounded_text(*scene_->ground.height) + " m, to \"contact\"");
+    note_once("at t = " + rounded_text(simulation_->time()) + " s part '" + m.part->name() +
+              "' is below the drawn ground, which is not solid; add a plane at its height, " +
+              rounded_text(*scene_->ground.height) + " m, to \"contact\"");
     return;
   }
 }
@@ -201,7 +201,7 @@ void Run::note_ground() {
 /// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
 /// write_record() must have updated the counters.
 void Run::note_violations() {
-  replace_notes(is_violation_note, violation_notes(record_.step_counters, scene_->body.contact));
+  replace_notes(is_violation_note, violation_notes(record_.work.steps, scene_->body.contact));
 }
 
 /// Adds a note on the largest error of the energy balance. It replaces that of earlier sessions.
@@ -231,13 +231,6 @@ Ledger Run::checked_ledger() {
   return ledger;
 }
 
-void Run::record_energies() {
-  record_.max_balance_error = energies_->max_error();
-  record_.max_kinetic = energies_->max_kinetic();
-  record_.movable_energy = energies_->movable();
-  record_.energy_share = energies_->share();
-}
-
 /// Records the last good state of a simulation that has failed, so that the motion before the failure can be
 /// examined. A state with energies that are not valid is not recorded.
 void Run::record_last_valid_state() {
@@ -260,25 +253,37 @@ void Run::record_state() {
   const Ledger ledger = checked_ledger();
   last_recorded_ = simulation_->state();
   recorded_time_ = simulation_->time();
-  writer_->append(simulation_->state());
+  count_work();
+  writer_->append(simulation_->state(), record_.work);
   if (contacts_) contacts_->append(*simulation_);
+  observe_state(ledger);
+}
+
+/// Includes a recorded state, at which the simulation is, in the largest and final values of run.json, and
+/// adds notes on it.
+void Run::observe_state(const Ledger& ledger) {
   const Gaps gaps = widest_gaps(*simulation_);
   record_.max_gap = std::max(record_.max_gap, gaps.closed);
   record_.open_gap = gaps.open;
   const double depth = deepest_share(*simulation_);
   record_.max_depth = std::max(record_.max_depth, depth);
   if (depth > kReportedOverlap)
-    for (const std::string& text : overlap_notes(*simulation_, reported_overlaps_)) note(text);
+    for (const std::string& text : overlap_notes(*simulation_, reported_overlaps_)) note_once(text);
   note_redundancy();
   note_engagements();
   note_turns();
   note_ground();
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
-  record_energies();
+  record_.max_balance_error = energies_->max_error();
+  record_.max_kinetic = energies_->max_kinetic();
+  record_.movable_energy = energies_->movable();
+  record_.energy_share = energies_->share();
 }
 
 /// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
+/// Notes are written before the states that they are about: a resumed run does not find them again.
 void Run::flush(bool to_disk) {
+  if (record_.notes.size() != written_notes_) write_record();
   if (contacts_) contacts_->flush(to_disk);
   writer_->flush(to_disk);
 }
@@ -294,14 +299,15 @@ void Run::write_tables() {
 void Run::save(bool to_disk) {
   flush(to_disk);
   update_record();
+  if (to_disk) record_.durable_states = record_.states;
   write_record();
 }
 
 /// Writes a checkpoint. All states recorded before it are then on the disk too.
 void Run::save_checkpoint() {
   save(true);
-  write_checkpoint(folder_->path(), {writer_->rows(), simulation_->state()});
-  checkpointed_ = Clock::now();
+  write_checkpoint(folder_->path(), {writer_->rows(), simulation_->state(), record_.work});
+  checkpointed_ = WallClock::now();
 }
 
 /// Sets the progress and the checksums of the recorded states in the run record.
@@ -321,32 +327,23 @@ void Run::update_record() {
     record_.add_file(kContactChecksumsFile);
   }
   count_work();
+  set_final_values();
 }
 
-/// Sets the counters of work and contact errors in the run record, summed over all sessions.
+/// Sets the work of all sessions in the run record. A resumed session has none before its first step.
 void Run::count_work() {
-  const StepCounters& session = simulation_->step_counters();
-  record_.step_counters.steps = earlier_steps_.steps + session.steps;
-  record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
-  record_.step_counters.evaluations = earlier_steps_.evaluations + session.evaluations;
-  record_.step_counters.rejected = earlier_steps_.rejected + session.rejected;
-  record_.step_counters.uncontrolled = earlier_steps_.uncontrolled + session.uncontrolled;
-  record_.step_counters.limit_impulses = earlier_steps_.limit_impulses + session.limit_impulses;
-  record_.step_counters.factorisations = earlier_steps_.factorisations + session.factorisations;
-  record_.step_counters.impacts = earlier_steps_.impacts + session.impacts;
-  record_.step_counters.sequential_impacts = earlier_steps_.sequential_impacts + session.sequential_impacts;
-  record_.step_counters.contact_sweeps = earlier_steps_.contact_sweeps + session.contact_sweeps;
-  record_.step_counters.contact_fallbacks = earlier_steps_.contact_fallbacks + session.contact_fallbacks;
-  record_.step_counters.contact_cutoffs = earlier_steps_.contact_cutoffs + session.contact_cutoffs;
-  record_.step_counters.contact_residual =
-      std::max(earlier_steps_.contact_residual, session.contact_residual);
-  record_.step_counters.contact_overlap = std::max(earlier_steps_.contact_overlap, session.contact_overlap);
-  record_.step_counters.worst_residual = earlier_steps_.worst_residual;
-  record_.step_counters.worst_residual.keep_worse(session.worst_residual);
-  record_.step_counters.worst_overlap = earlier_steps_.worst_overlap;
-  record_.step_counters.worst_overlap.keep_worse(session.worst_overlap);
-  record_.counters = earlier_counters_;
-  record_.counters += simulation_->counters();
+  const RunWork session{simulation_->step_counters(), simulation_->counters()};
+  if (!work_at_start_)
+    record_.work = session;
+  else if (session.steps.steps == work_at_start_->steps.steps)
+    record_.work = earlier_work_;
+  else
+    record_.work = continued(earlier_work_, session, *work_at_start_);
+}
+
+/// Sets the values of the present state in the run record.
+void Run::set_final_values() {
+  record_.steps_done = scene_->tolerance > 0 ? record_.work.steps.steps : simulation_->state().step;
   const std::vector<double>& rested = simulation_->state().at_rest;
   record_.asleep =
       static_cast<int>(std::count_if(rested.begin(), rested.end(), [](double time) { return time < 0; }));
@@ -358,12 +355,13 @@ void Run::count_work() {
 
 void Run::write_record() {
   write_run_record(*folder_ / kRunFile, record_);
-  saved_ = Clock::now();
+  written_notes_ = record_.notes.size();
+  saved_ = WallClock::now();
 }
 
 void Run::step_to_end() {
   if (at_end(*simulation_, schedule_)) return;
-  Clock::time_point flushed = Clock::now();
+  WallClock::time_point flushed = WallClock::now();
   const double first_time = simulation_->time();
   progress_->begin("simulate", schedule_.end() - first_time, "s");
   while (!at_end(*simulation_, schedule_)) {
@@ -374,9 +372,8 @@ void Run::step_to_end() {
     const bool records = scheduled_step(*simulation_, schedule_);
     progress_->advance(simulation_->time() - first_time);
     if (records) record_state();
-    const Clock::time_point now = Clock::now();
-    if (std::chrono::duration<double>(now - checkpointed_).count() >= options_.checkpoint_every &&
-        !at_end(*simulation_, schedule_)) {
+    const WallClock::time_point now = WallClock::now();
+    if (seconds_since(checkpointed_) >= options_.checkpoint_every && !at_end(*simulation_, schedule_)) {
       save_checkpoint();
       continue;
     }
@@ -407,7 +404,7 @@ std::string Run::end_failed(double elapsed) {
 }
 
 bool Run::simulate() {
-  const Clock::time_point start = Clock::now();
+  const WallClock::time_point start = WallClock::now();
   try {
     try {
       step_to_end();
@@ -422,9 +419,9 @@ bool Run::simulate() {
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
     if (!stopped_) remove_checkpoints(folder_->path());
-    if (record_.step_counters.uncontrolled > 0)
+    if (record_.work.steps.uncontrolled > 0)
       note("resting contacts of many bodies, or of soft ones, in " +
-           count_text(record_.step_counters.uncontrolled, "step") +
+           count_text(record_.work.steps.uncontrolled, "step") +
            ": the error of these steps is not controlled; they are at most " +
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
            " s long, and --estimate-error measures their error");
@@ -442,7 +439,7 @@ bool Run::simulate() {
 
 void Run::write(const std::string& stage, const std::vector<std::string>& files,
                 const std::function<void()>& task) {
-  const Clock::time_point start = Clock::now();
+  const WallClock::time_point start = WallClock::now();
   try {
     task();
   } catch (const Interrupted& interruption) {
@@ -476,6 +473,7 @@ void Run::fail(const std::string& message) noexcept {
     record_.status = RunRecord::Status::failed;
     record_.message = message;
     count_work();
+    set_final_values();
     write_record();  // not save(), which flushes the recording: flushing may be what failed
   } catch (const std::exception&) {
     // The first failure is the one that is reported.

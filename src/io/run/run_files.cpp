@@ -48,25 +48,14 @@ std::string frame_name(const std::string& stem, std::int64_t number, const std::
 }
 
 bool is_run_file(const std::filesystem::path& relative) {
-  static constexpr std::array<const char*, 19> top{kNewRunFile,
-                                                   kRunFile,
-                                                   kSceneFile,
-                                                   kLayoutFile,
-                                                   kTimesFile,
-                                                   kCoordinatesFile,
-                                                   kVelocitiesFile,
-                                                   kModesFile,
-                                                   kChecksumsFile,
-                                                   kContactCacheFile,
-                                                   kCheckpointFiles[0],
-                                                   kCheckpointFiles[1],
-                                                   kTrajectoryFile,
-                                                   kContactsFile,
-                                                   kContactsTable,
-                                                   kJointImpulsesFile,
-                                                   kJointImpulsesTable,
-                                                   kContactChecksumsFile,
-                                                   kLockFile};
+  static constexpr std::array<const char*, 20> top{
+      kNewRunFile,           kRunFile,           kSceneFile,
+      kLayoutFile,           kTimesFile,         kCoordinatesFile,
+      kVelocitiesFile,       kModesFile,         kWorkFile,
+      kChecksumsFile,        kContactCacheFile,  kCheckpointFiles[0],
+      kCheckpointFiles[1],   kTrajectoryFile,    kContactsFile,
+      kContactsTable,        kJointImpulsesFile, kJointImpulsesTable,
+      kContactChecksumsFile, kLockFile};
   const std::string folder = relative.parent_path().string(),
                     name = finished_name(relative.filename().string());
   if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end() || is_recorded_mesh(name);

@@ -89,22 +89,63 @@ fs::path create_unfinished(const fs::path& name) {
   }
 }
 
-/// Removes the folders "NAME.part-PID-N" of new runs whose processes no longer exist. folder: path of NAME.
-void remove_unfinished_folders(const fs::path& folder) {
-  std::vector<fs::path> unfinished;
-  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-  for (const fs::directory_entry& entry : entries_of(parent)) {
-    const std::string name = entry.path().filename().string();
-    const int process = writing_process(name);
-    if (process < 0 || finished_name(name) != folder.filename() || process_exists(process)) continue;
-    if (!fs::is_directory(entry.symlink_status())) continue;
-    const fs::directory_iterator first = entries_of(entry.path()), end;
-    if (std::all_of(first, end,
-                    [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); }))
-      unfinished.push_back(entry.path());
+/// Locks a file for as long as the object exists, if no other process has locked it.
+class TriedLock {
+ public:
+  explicit TriedLock(const fs::path& file)
+      : descriptor_(retry([&] { return ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC); })),
+        locked_(descriptor_ >= 0 && retry([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); }) == 0) {}
+  ~TriedLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
-  std::error_code ignored;  // a folder that cannot be removed does not prevent a run
-  for (const fs::path& path : unfinished) fs::remove_all(path, ignored);
+  TriedLock(const TriedLock&) = delete;
+  TriedLock& operator=(const TriedLock&) = delete;
+
+  bool locked() const { return locked_; }
+
+ private:
+  int descriptor_;
+  bool locked_;
+};
+
+/// Removes the folder of a new run that was killed before it began. The lock of the folder decides whether
+/// its run is alive, because a process number says little: the process may be on another machine, or the
+/// number may be that of a later process.
+void remove_if_abandoned(const fs::path& folder) {
+  if (fs::is_empty(folder)) {  // its process was killed before the lock was made, or makes it now
+    ::rmdir(folder.c_str());
+    return;
+  }
+  const TriedLock lock(folder / kLockFile);
+  if (!lock.locked()) return;
+  const fs::directory_iterator first = entries_of(folder), end;
+  if (std::all_of(first, end,
+                  [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); }))
+    fs::remove_all(folder);
+}
+
+/// Removes the folders "NAME.part-PID-N" of new runs that were killed. folder: path of NAME. A folder that
+/// cannot be read or removed does not prevent a run.
+void remove_unfinished_folders(const fs::path& folder) {
+  const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  std::vector<fs::path> unfinished;
+  try {
+    for (const fs::directory_entry& entry : entries_of(parent)) {
+      const std::string name = entry.path().filename().string();
+      if (writing_process(name) >= 0 && finished_name(name) == folder.filename() &&
+          fs::is_directory(entry.symlink_status()))
+        unfinished.push_back(entry.path());
+    }
+  } catch (const fs::filesystem_error&) {
+    return;
+  }
+  for (const fs::path& path : unfinished) {
+    try {
+      remove_if_abandoned(path);
+    } catch (const fs::filesystem_error&) {
+      // Another process may have removed the folder.
+    }
+  }
 }
 
 }  // namespace
@@ -180,7 +221,7 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene,
     throw OutputRefused("the output folder " + folder_.string() +
                         " is a symbolic link; give the path of its target");
   if (fs::exists(status) && !fs::is_directory(status))
-    throw OutputRefused("the output folder " + folder_.string() + " is a file");
+    throw OutputRefused("the output folder " + folder_.string() + " is a file; choose another name with -o");
   if (!fs::exists(status)) {
     if (existing == Existing::resume)
       throw OutputRefused("there is no run to resume: the folder " + folder_.string() + " does not exist");
@@ -198,13 +239,30 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene,
     note_ = "no run had begun in " + folder_.string() + "; the run starts at time 0";
 }
 
+/// Creates a folder "NAME.part-PID-N", locks it, and returns its path. folder: path of NAME.
+fs::path RunFolder::create_locked(const fs::path& folder) {
+  constexpr int kAttempts = 10;
+  for (int attempt = 1;; ++attempt) {
+    const fs::path unfinished = create_unfinished(folder);
+    try {
+      lock_ = std::make_unique<Lock>(unfinished);
+      return unfinished;
+    } catch (const std::exception&) {
+      // Before the lock is made, another run may take the folder for an abandoned one and remove it.
+      const bool removed = !exists_at_all(unfinished);
+      std::error_code ignored;
+      fs::remove_all(unfinished, ignored);
+      if (!removed || attempt == kAttempts) throw;
+    }
+  }
+}
+
 /// Creates the folder, with the lock and the options.
 void RunFolder::create(const WriteOptions& write_options) {
   if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path());
   remove_unfinished_folders(folder_);
-  const fs::path unfinished = create_unfinished(folder_);
+  const fs::path unfinished = create_locked(folder_);
   try {
-    lock_ = std::make_unique<Lock>(unfinished);
     if (write_options) write_options(unfinished / kNewRunFile);
     std::error_code error;
     fs::rename(unfinished, folder_, error);
@@ -245,8 +303,8 @@ bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) 
   return false;
 }
 
-/// Removes unfinished files. In the folders of frames, other processes may write: there, only the files of
-/// processes that no longer exist are removed.
+/// Removes unfinished files. In the folders of frames, other processes may write: there, only files that no
+/// process has locked, and whose processes do not exist on this machine, are removed.
 void RunFolder::remove_unfinished_files() {
   std::vector<fs::path> unfinished;
   for (const fs::directory_entry& entry : entries_of(folder_))
@@ -256,7 +314,8 @@ void RunFolder::remove_unfinished_files() {
     for (const fs::directory_entry& entry : entries_of(folder_ / inner)) {
       const std::string name = entry.path().filename().string();
       const int process = writing_process(name);
-      if (process >= 0 && is_run_file(fs::path(inner) / name) && !process_exists(process))
+      if (process >= 0 && is_run_file(fs::path(inner) / name) && !process_exists(process) &&
+          TriedLock(entry.path()).locked())
         unfinished.push_back(entry.path());
     }
   }

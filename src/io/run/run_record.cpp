@@ -123,26 +123,6 @@ Json violation_of(const ContactViolation& violation) {
   return {{"value", violation.value}, {"tolerance", violation.tolerance}, {"time", violation.time}};
 }
 
-Json work_of(const RunRecord& r) {
-  return {{"steps", r.step_counters.steps},
-          {"evaluations", r.step_counters.evaluations},
-          {"rejected", r.step_counters.rejected},
-          {"uncontrolled", r.step_counters.uncontrolled},
-          {"limit_impulses", r.step_counters.limit_impulses},
-          {"factorisations", r.step_counters.factorisations},
-          {"impacts", r.step_counters.impacts},
-          {"sequential_impacts", r.step_counters.sequential_impacts},
-          {"contact_sweeps", r.step_counters.contact_sweeps},
-          {"contact_fallbacks", r.step_counters.contact_fallbacks},
-          {"contact_cutoffs", r.step_counters.contact_cutoffs},
-          {"jacobian_points", r.counters.jacobian_points},
-          {"rate_points", r.counters.rate_points},
-          {"mass_matrices", r.counters.mass_matrices},
-          {"inertial_forces", r.counters.inertial_forces},
-          {"point_jets", r.counters.point_jets},
-          {"surfaces", r.counters.surfaces}};
-}
-
 Json monitors_of(const RunRecord& r) {
   return {{"max_balance_error", r.max_balance_error},
           {"balance_share", r.energy_share},
@@ -153,10 +133,10 @@ Json monitors_of(const RunRecord& r) {
           {"open_gap", r.open_gap},
           {"max_depth", r.max_depth},
           {"asleep", r.asleep},
-          {"max_contact_residual", r.step_counters.contact_residual},
-          {"max_contact_overlap", r.step_counters.contact_overlap},
-          {"worst_contact_residual", violation_of(r.step_counters.worst_residual)},
-          {"worst_contact_overlap", violation_of(r.step_counters.worst_overlap)},
+          {"max_contact_residual", r.work.steps.contact_residual},
+          {"max_contact_overlap", r.work.steps.contact_overlap},
+          {"worst_contact_residual", violation_of(r.work.steps.worst_residual)},
+          {"worst_contact_overlap", violation_of(r.work.steps.worst_overlap)},
           {"largest_stable_step", bound(r.stable_step)}};
 }
 
@@ -187,13 +167,14 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"steps", r.steps},
                       {"steps_done", r.steps_done},
                       {"states", r.states},
+                      {"durable_states", r.durable_states},
                       {"resumed", r.resumed}};
   json["scene"] = {
       {"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
   json["options"] = options_of(r);
   json["build"] = pairs(r.build);
   json["wall_seconds"] = pairs(r.seconds);
-  json["work"] = work_of(r);
+  json["work"] = pairs(counts_of(r.work));
   json["monitors"] = monitors_of(r);
   if (r.error) json["error_estimate"] = error_estimate_of(*r.error);
   json["held"] = r.velocities_without_inertia;
@@ -214,6 +195,7 @@ void read_progress(const Json& progress, RunRecord& r) {
   progress.at("steps").get_to(r.steps);
   progress.at("steps_done").get_to(r.steps_done);
   progress.at("states").get_to(r.states);
+  progress.at("durable_states").get_to(r.durable_states);
   progress.at("resumed").get_to(r.resumed);
 }
 
@@ -249,23 +231,7 @@ ContactViolation read_violation(const Json& monitors, const char* key) {
 }
 
 void read_work(const Json& work, RunRecord& r) {
-  work.at("steps").get_to(r.step_counters.steps);
-  work.at("evaluations").get_to(r.step_counters.evaluations);
-  work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
-  r.step_counters.rejected = work.value("rejected", 0L);
-  r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
-  r.step_counters.factorisations = work.value("factorisations", 0L);
-  r.step_counters.impacts = work.value("impacts", 0L);
-  r.step_counters.sequential_impacts = work.value("sequential_impacts", 0L);
-  r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
-  r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
-  r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
-  work.at("jacobian_points").get_to(r.counters.jacobian_points);
-  work.at("rate_points").get_to(r.counters.rate_points);
-  work.at("mass_matrices").get_to(r.counters.mass_matrices);
-  work.at("inertial_forces").get_to(r.counters.inertial_forces);
-  work.at("point_jets").get_to(r.counters.point_jets);
-  work.at("surfaces").get_to(r.counters.surfaces);
+  for (const auto& [name, count] : work.items()) set_count(r.work, name, count.get<long>());
 }
 
 void read_monitors(const Json& monitors, RunRecord& r) {
@@ -278,10 +244,10 @@ void read_monitors(const Json& monitors, RunRecord& r) {
   monitors.at("open_gap").get_to(r.open_gap);
   r.max_depth = monitors.value("max_depth", 0.0);
   r.asleep = monitors.value("asleep", 0);
-  r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
-  r.step_counters.contact_overlap = monitors.value("max_contact_overlap", 0.0);
-  r.step_counters.worst_residual = read_violation(monitors, "worst_contact_residual");
-  r.step_counters.worst_overlap = read_violation(monitors, "worst_contact_overlap");
+  r.work.steps.contact_residual = monitors.value("max_contact_residual", 0.0);
+  r.work.steps.contact_overlap = monitors.value("max_contact_overlap", 0.0);
+  r.work.steps.worst_residual = read_violation(monitors, "worst_contact_residual");
+  r.work.steps.worst_overlap = read_violation(monitors, "worst_contact_overlap");
   if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
 }
 

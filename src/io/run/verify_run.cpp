@@ -96,14 +96,14 @@ void verify_tables(const VerifiedRun& run, Verification& result) {
   std::string names;
   for (const auto& entry : record.checksums)
     if (is_table(entry.first)) names += (names.empty() ? "" : ", ") + entry.first;
-  for (std::string& text : recording.damage()) result.faults.push_back(std::move(text));
+  for (std::string& text : recording.inspect().damage) result.faults.push_back(std::move(text));
   const bool all_there = recording.rows() >= record.states;
   auto compare = [&](const Checksums& now) { compare_checksums(folder, record, now, result); };
   if (all_there) attempt(result, [&] { compare(recording.checksums(record.states)); });
   auto check_contacts = [&] {
     const ChecksumReader contacts = contact_checksums(folder);
     const std::int64_t states = contacts.whole_states();
-    for (std::string& text : contacts.damage(states)) result.faults.push_back(std::move(text));
+    for (std::string& text : contacts.inspect().damage) result.faults.push_back(std::move(text));
     if (states < std::min(record.states, recording.rows()))
       result.faults.push_back((folder / kContactsFile).string() + " or " +
                               (folder / kJointImpulsesFile).string() + " has the rows of only " +

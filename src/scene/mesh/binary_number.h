@@ -1,9 +1,11 @@
-// Numbers in binary files: copies of bytes in a given order.
+// Numbers in binary files: copies of bytes in a given order, of types that are known to the compiler or that
+// the file names.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace pliant {
@@ -23,6 +25,42 @@ T binary_number(const char* from, bool little_endian = true) {
   T value;
   std::memcpy(&value, bytes.data(), sizeof(T));
   return value;
+}
+
+/// The types of numbers in binary files.
+enum class NumberType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Returns the number of a type that begins at a byte; a double represents each of them exactly. The caller
+/// checks that size_of(type) bytes are there.
+inline double binary_number(NumberType type, const char* from, bool little_endian = true) {
+  switch (type) {
+    case NumberType::int8:
+      return binary_number<std::int8_t>(from, little_endian);
+    case NumberType::uint8:
+      return binary_number<std::uint8_t>(from, little_endian);
+    case NumberType::int16:
+      return binary_number<std::int16_t>(from, little_endian);
+    case NumberType::uint16:
+      return binary_number<std::uint16_t>(from, little_endian);
+    case NumberType::int32:
+      return binary_number<std::int32_t>(from, little_endian);
+    case NumberType::uint32:
+      return binary_number<std::uint32_t>(from, little_endian);
+    case NumberType::float32:
+      return binary_number<float>(from, little_endian);
+    case NumberType::float64:
+      return binary_number<double>(from, little_endian);
+  }
+  return 0;
+}
+
+/// Returns the number of bytes of a number.
+inline std::size_t size_of(NumberType type) {
+  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+inline bool is_integer(NumberType type) {
+  return type != NumberType::float32 && type != NumberType::float64;
 }
 
 }  // namespace pliant

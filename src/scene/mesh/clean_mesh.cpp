@@ -62,7 +62,7 @@ class MeshCleaner {
 
  private:
   void note(std::size_t n, const std::string& one, const std::string& many, const std::string& rest) {
-    if (n > 0) notes_.push_back(count_text(n, one, many) + rest);
+    if (n > 0) notes_.push_back(counted(n, one, many) + rest);
   }
 
   /// Numbers the positions in the order of the file, and counts the vertices that no triangle uses.

@@ -19,31 +19,34 @@ constexpr std::size_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsign
                       kUnsignedInt = 5125, kFloat = 5126;
 constexpr std::size_t kMaxInteger = std::numeric_limits<std::int32_t>::max();
 
-std::size_t component_size(std::size_t type, const Value& at) {
-  if (type == kByte || type == kUnsignedByte) return 1;
-  if (type == kShort || type == kUnsignedShort) return 2;
-  if (type == kUnsignedInt || type == kFloat) return 4;
+NumberType number_type(std::size_t type, const Value& at) {
+  switch (type) {
+    case kByte:
+      return NumberType::int8;
+    case kUnsignedByte:
+      return NumberType::uint8;
+    case kShort:
+      return NumberType::int16;
+    case kUnsignedShort:
+      return NumberType::uint16;
+    case kUnsignedInt:
+      return NumberType::uint32;
+    case kFloat:
+      return NumberType::float32;
+    default:
+      break;
+  }
   at.fail(std::to_string(type), "a component type of glTF: 5120, 5121, 5122, 5123, 5125 or 5126");
 }
 
-/// Returns a number of a component type. A normalized integer is a fraction of its largest value.
-double component(const char* from, std::size_t type, bool normalized) {
-  switch (type) {
-    case kByte:
-      return normalized ? std::max(binary_number<std::int8_t>(from) / 127.0, -1.0)
-                        : binary_number<std::int8_t>(from);
-    case kUnsignedByte:
-      return binary_number<std::uint8_t>(from) / (normalized ? 255.0 : 1.0);
-    case kShort:
-      return normalized ? std::max(binary_number<std::int16_t>(from) / 32767.0, -1.0)
-                        : binary_number<std::int16_t>(from);
-    case kUnsignedShort:
-      return binary_number<std::uint16_t>(from) / (normalized ? 65535.0 : 1.0);
-    case kUnsignedInt:
-      return binary_number<std::uint32_t>(from);
-    default:
-      return binary_number<float>(from);
-  }
+/// Returns a number of a component type. A normalized integer of one or two bytes is a fraction of
+/// its largest value, at least -1.
+double component(const char* from, NumberType type, bool normalized) {
+  const double number = binary_number(type, from);
+  if (!normalized || size_of(type) > 2) return number;
+  const bool is_signed = type == NumberType::int8 || type == NumberType::int16;
+  const double bits = 8 * static_cast<double>(size_of(type)) - (is_signed ? 1 : 0);
+  return std::max(number / (std::exp2(bits) - 1), -1.0);
 }
 
 /// Returns the bytes of a base64 text (RFC 4648).
@@ -144,9 +147,10 @@ Buffers::Array Buffers::array(const Value& user, const char* type, std::size_t c
     accessor.fail("no bufferView", "an accessor with data");
   const Value view = views[accessor["bufferView"].integer(views.size() - 1)];
   const Value component_type = accessor["componentType"];
-  Array found{nullptr, accessor["count"].integer(kMaxInteger), 0, component_type.integer(kMaxInteger),
+  Array found{nullptr, accessor["count"].integer(kMaxInteger), 0,
+              number_type(component_type.integer(kMaxInteger), component_type),
               accessor["normalized"].exists() && accessor["normalized"].boolean()};
-  const std::size_t size = components * component_size(found.component_type, component_type);
+  const std::size_t size = components * size_of(found.component_type);
   found.stride = view["byteStride"].integer(kMaxInteger, size);
   const std::string& bytes = buffer(view["buffer"].integer(kMaxInteger), view["buffer"]);
   const std::size_t begin = view["byteOffset"].integer(kMaxInteger, 0),
@@ -165,7 +169,7 @@ Buffers::Array Buffers::array(const Value& user, const char* type, std::size_t c
 
 std::vector<Vec3<double>> Buffers::vectors(const Value& user) {
   const Array array = this->array(user, "VEC3", 3);
-  const std::size_t size = component_size(array.component_type, user);
+  const std::size_t size = size_of(array.component_type);
   std::vector<Vec3<double>> all(array.count);
   for (std::size_t i = 0; i < array.count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -184,7 +188,7 @@ std::vector<std::size_t> Buffers::integers(const Value& user, std::size_t limit)
   std::vector<std::size_t> all(array.count);
   for (std::size_t i = 0; i < array.count; ++i) {
     const double value = component(array.data + i * array.stride, array.component_type, false);
-    if (array.component_type == kFloat || value < 0 || value >= static_cast<double>(limit))
+    if (!is_integer(array.component_type) || value < 0 || value >= static_cast<double>(limit))
       user.fail("the index " + std::to_string(value),
                 "integers below " + std::to_string(limit) + ", the number of vertices");
     all[i] = static_cast<std::size_t>(value);

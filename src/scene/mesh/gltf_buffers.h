@@ -9,6 +9,7 @@
 
 #include <pliant/math/types.h>
 
+#include "binary_number.h"
 #include "gltf_json.h"
 
 namespace pliant::gltf {
@@ -29,7 +30,8 @@ class Buffers {
   /// The data of an accessor: its components are `components` numbers of one type, every `stride` bytes.
   struct Array {
     const char* data;
-    std::size_t count, stride, component_type;
+    std::size_t count, stride;
+    NumberType component_type;
     bool normalized;
   };
   Array array(const Value& user, const char* type, std::size_t components);

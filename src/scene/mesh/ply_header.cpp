@@ -13,17 +13,17 @@ namespace {
 
 struct TypeName {
   std::string_view name;
-  Type type;
+  NumberType type;
 };
 constexpr TypeName kTypes[] = {
-    {"char", Type::int8},      {"int8", Type::int8},       {"uchar", Type::uint8},
-    {"uint8", Type::uint8},    {"short", Type::int16},     {"int16", Type::int16},
-    {"ushort", Type::uint16},  {"uint16", Type::uint16},   {"int", Type::int32},
-    {"int32", Type::int32},    {"uint", Type::uint32},     {"uint32", Type::uint32},
-    {"float", Type::float32},  {"float32", Type::float32}, {"double", Type::float64},
-    {"float64", Type::float64}};
+    {"char", NumberType::int8},      {"int8", NumberType::int8},       {"uchar", NumberType::uint8},
+    {"uint8", NumberType::uint8},    {"short", NumberType::int16},     {"int16", NumberType::int16},
+    {"ushort", NumberType::uint16},  {"uint16", NumberType::uint16},   {"int", NumberType::int32},
+    {"int32", NumberType::int32},    {"uint", NumberType::uint32},     {"uint32", NumberType::uint32},
+    {"float", NumberType::float32},  {"float32", NumberType::float32}, {"double", NumberType::float64},
+    {"float64", NumberType::float64}};
 
-Type type_of(Words& words, std::string_view word) {
+NumberType type_of(Words& words, std::string_view word) {
   const auto* const known =
       std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return t.name == word; });
   if (known == std::end(kTypes)) words.fail("a type: char, uchar, short, ushort, int, uint, float or double");
@@ -60,15 +60,6 @@ Property read_property(Words& words) {
 }
 
 }  // namespace
-
-std::size_t size_of(Type type) {
-  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-bool is_integer(Type type) {
-  return type != Type::float32 && type != Type::float64;
-}
 
 Header read_header(const MeshBytes& file) {
   Words words(file);

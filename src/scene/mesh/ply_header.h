@@ -5,19 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "binary_number.h"
 #include "raw_mesh.h"
 
 namespace pliant::ply {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-std::size_t size_of(Type type);
-bool is_integer(Type type);
-
 struct Property {
   std::string name;
-  Type type;
+  NumberType type;
   bool list = false;
-  Type count_type = Type::uint8;  ///< of the number of entries of a list
+  NumberType count_type = NumberType::uint8;  ///< of the number of entries of a list
 };
 struct Element {
   std::string name;

@@ -25,7 +25,7 @@ struct RawMesh {
 };
 
 /// Returns "1 line is" or "2 lines are": a number with a noun and the verb.
-inline std::string count_text(std::size_t n, const std::string& one, const std::string& many) {
+inline std::string counted(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 

@@ -89,7 +89,7 @@ class GltfReader {
     }
     if (mesh_.triangles.empty()) root_.fail("no triangle in its scene", "one or more meshes of triangles");
     if (loose_ > 0)
-      mesh_.notes.push_back(count_text(loose_, "set of lines or points is", "sets of lines or points are") +
+      mesh_.notes.push_back(counted(loose_, "set of lines or points is", "sets of lines or points are") +
                             " ignored");
     return std::move(mesh_);
   }

@@ -32,7 +32,7 @@ class ObjReader {
     if (faces_.sizes.empty()) fail_at_byte(file_, file_.bytes.size(), "no face", "lines v and lines f");
     add_polygons(faces_, file_.name, mesh_);
     if (loose_ > 0)
-      mesh_.notes.push_back(count_text(loose_, "line or point is", "lines and points are") + " ignored");
+      mesh_.notes.push_back(counted(loose_, "line or point is", "lines and points are") + " ignored");
     return std::move(mesh_);
   }
 

@@ -20,25 +20,28 @@ namespace ply {
 namespace {
 
 /// The largest number of additional bytes between the header and the data of a binary file that are found.
+/// Some programs pad the header, for example to a multiple of 64 bytes. The lengths of lists are in the data,
+/// so that only reading shows whether a place is right. Reading from a wrong place ends soon: at a number
+/// that is not finite, at an impossible length or number of a vertex, or before the end of the file.
 constexpr std::size_t kMaxDataShift = 64;
 
 /// The values of a text file, one after the other.
 class TextValues {
  public:
   TextValues(const MeshBytes& file, const Header& header, std::size_t) : words_(file, header.size) {}
-  double number(Type type, const char* meaning) {
+  double number(NumberType type, const char* meaning) {
     return is_integer(type) ? static_cast<double>(integer(type, meaning))
                             : words_.number(words_.next(), meaning);
   }
-  long long integer(Type, const char* meaning) {
+  long long integer(NumberType, const char* meaning) {
     return words_.integer(words_.next(), std::numeric_limits<std::int32_t>::min(),
                           std::numeric_limits<std::uint32_t>::max(), meaning);
   }
-  void skip(Type) {
+  void skip(NumberType) {
     if (words_.next().empty()) words_.fail("a value of a property");
   }
   /// Smallest number of bytes of a value.
-  static std::size_t least_size(Type) { return 2; }
+  static std::size_t least_size(NumberType) { return 2; }
   /// Number of bytes that are left; one more for the last value, which no blank follows.
   std::size_t remaining() const { return words_.remaining() + 1; }
   [[noreturn]] void fail(const std::string&, const std::string& expected) { words_.fail(expected); }
@@ -54,14 +57,16 @@ class BinaryValues {
  public:
   BinaryValues(const MeshBytes& file, const Header& header, std::size_t shift)
       : file_(file), at_(header.size + shift), little_(header.format == Header::Format::little_endian) {}
-  double number(Type type, const char* meaning) {
+  double number(NumberType type, const char* meaning) {
     const double value = next(type, meaning);
     if (!std::isfinite(value)) fail(std::to_string(value), std::string(meaning) + ", a finite number");
     return value;
   }
-  long long integer(Type type, const char* meaning) { return static_cast<long long>(number(type, meaning)); }
-  void skip(Type type) { next(type, "a value of a property"); }
-  static std::size_t least_size(Type type) { return size_of(type); }
+  long long integer(NumberType type, const char* meaning) {
+    return static_cast<long long>(number(type, meaning));
+  }
+  void skip(NumberType type) { next(type, "a value of a property"); }
+  static std::size_t least_size(NumberType type) { return size_of(type); }
   std::size_t remaining() const { return at_ < file_.bytes.size() ? file_.bytes.size() - at_ : 0; }
   [[noreturn]] void fail(const std::string& found, const std::string& expected) {
     fail_at_byte(file_, last_, found, expected);
@@ -69,30 +74,12 @@ class BinaryValues {
   std::size_t left_over() const { return remaining(); }
 
  private:
-  double next(Type type, const char* meaning) {
+  double next(NumberType type, const char* meaning) {
     last_ = at_;
     if (remaining() < size_of(type)) fail("the end of the file", meaning);
     const char* from = file_.bytes.data() + at_;
     at_ += size_of(type);
-    switch (type) {
-      case Type::int8:
-        return binary_number<std::int8_t>(from, little_);
-      case Type::uint8:
-        return binary_number<std::uint8_t>(from, little_);
-      case Type::int16:
-        return binary_number<std::int16_t>(from, little_);
-      case Type::uint16:
-        return binary_number<std::uint16_t>(from, little_);
-      case Type::int32:
-        return binary_number<std::int32_t>(from, little_);
-      case Type::uint32:
-        return binary_number<std::uint32_t>(from, little_);
-      case Type::float32:
-        return binary_number<float>(from, little_);
-      case Type::float64:
-        return binary_number<double>(from, little_);
-    }
-    return 0;
+    return binary_number(type, from, little_);
   }
 
   const MeshBytes& file_;
@@ -122,11 +109,11 @@ class PlyReader {
       fail_at_byte(file_, header_.size, "no face", "one or more faces with three corners");
     add_polygons(faces_, file_.name, mesh_);
     if (loose_ > 0)
-      mesh_.notes.push_back(count_text(loose_, "line or point is", "lines and points are") + " ignored");
+      mesh_.notes.push_back(counted(loose_, "line or point is", "lines and points are") + " ignored");
     left_over_ = values_.left_over();
     if (left_over_ > 0)
       mesh_.notes.push_back(
-          count_text(left_over_, "byte after the last element is", "bytes after the last element are") +
+          counted(left_over_, "byte after the last element is", "bytes after the last element are") +
           " ignored");
     return std::move(mesh_);
   }
@@ -241,7 +228,7 @@ RawMesh read_binary(const MeshBytes& file, const Header& header) {
         RawMesh mesh = shifted.read();
         if (shifted.left_over() > 0) continue;
         mesh.notes.push_back(
-            count_text(shift, "byte between header and data is", "bytes between header and data are") +
+            counted(shift, "byte between header and data is", "bytes between header and data are") +
             " ignored");
         return mesh;
       } catch (const std::invalid_argument&) {

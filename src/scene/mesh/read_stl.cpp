@@ -92,7 +92,7 @@ std::size_t find_shift(const MeshBytes& file, RawMesh& mesh) {
                  std::to_string((size - kHeader - kCount) / kTriangle) + ", from the " +
                      std::to_string(size) + " bytes of the file");
   mesh.notes.push_back(
-      count_text(size - needed, "byte after the last triangle is", "bytes after the last triangle are") +
+      counted(size - needed, "byte after the last triangle is", "bytes after the last triangle are") +
       " ignored");
   return 0;
 }

@@ -10,12 +10,14 @@
 
 #include <pliant/body/model.h>
 #include <pliant/body/state.h>
+#include <pliant/io/work_row.h>
 
 namespace pliant {
 
 struct Checkpoint {
   std::int64_t states = 0;  ///< number of states that were recorded before
   State state;
+  RunWork work;  ///< of the run up to this state
 };
 
 /// Writes a checkpoint in place of the older of the two of a folder, so that it survives a power cut. Throws

@@ -19,8 +19,9 @@ std::string open_joints_note(const Simulation& simulation);
 
 /// Returns notes on the impulses of simulation.engage_impulses() from index `first` on. For each time at
 /// which joints engage, a note gives the largest impulse. For each time at which the velocities of prescribed
-/// paths jump, a note gives the largest impulse, unless the path of its joint has jumped before.
-std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first);
+/// paths jump, a note gives the largest impulse, unless a note in `earlier` is about the path of its joint.
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first,
+                                      const std::vector<std::string>& earlier);
 
 /// Returns the solvers of the joints: "blocks", "augmented", "blocks and augmented", or an empty text.
 std::string solver_note(const Model& model);

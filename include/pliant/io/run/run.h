@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <pliant/io/contact_recording.h>
+#include <pliant/io/frame_schedule.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/io/run/progress.h>
@@ -93,16 +94,17 @@ class Run {
   /// last state that was recorded or saved.
   void resume_recording(const StableStep& stable);
   void check_resumable() const;
-  void check_numbers(const Recording& recorded, std::int64_t states) const;
-  void set_last_state(const Recording& recorded, std::int64_t& keep);
-  bool continue_from_checkpoint(const Recording& recorded, std::int64_t keep);
+  void remove_lost_states();
+  struct Continuation;
+  Continuation find_continuation(const Recording& recorded);
+  bool find_saved_state(const Recording& recorded, Continuation& from);
+  void observe_recorded(const Recording& recorded, std::int64_t states);
   void set_options();
   void describe(const StableStep& stable);
   void note_setup(const StableStep& stable);
   void record_state();
+  void observe_state(const Ledger& ledger);
   Ledger checked_ledger();
-  void record_energies();
-  void add_recorded_energies(const Recording& recorded, std::int64_t states);
   void record_last_valid_state();
   std::string end_failed(double elapsed);
   std::string remedy(double elapsed) const;
@@ -116,10 +118,13 @@ class Run {
   void save_checkpoint();
   void update_record();
   void count_work();
+  void set_final_values();
   void write_record();
   void fail(const std::string& message) noexcept;
   /// Shows a note. Adds the note to run.json, unless it is there already.
   void note(const std::string& text);
+  /// Shows a note and adds it to run.json, unless it is there already.
+  void note_once(const std::string& text);
   void note_redundancy();
   void note_engagements();
   void note_turns();
@@ -146,8 +151,10 @@ class Run {
   std::set<std::string> reported_redundant_, reported_turned_;
   std::set<TouchingPair> reported_overlaps_;
   std::vector<bool> reported_acting_;
-  StepCounters earlier_steps_;  // counters of earlier sessions of a resumed run
-  Counters earlier_counters_;
+  // The work up to the state from which a resumed run continues, and the counters of the simulation there.
+  RunWork earlier_work_;
+  std::optional<RunWork> work_at_start_;  // none in a new run
+  std::size_t written_notes_ = 0;         // number of notes in run.json
   std::chrono::steady_clock::time_point started_, saved_, checkpointed_;
   bool stopped_ = false, reported_ground_ = false;
 };

@@ -10,11 +10,12 @@ namespace pliant {
 inline constexpr const char* kRunFile = "run.json";        ///< the run record: options, progress, cost, notes
 inline constexpr const char* kSceneFile = "scene.json";    ///< the text of the scene file
 inline constexpr const char* kLayoutFile = "layout.json";  ///< the columns of the tables
-inline constexpr int kRecordingVersion = 4;                ///< version of layout.json and the tables
+inline constexpr int kRecordingVersion = 5;                ///< version of layout.json and the tables
 inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
 inline constexpr const char* kModesFile = "modes.npy";  ///< entries of a state besides t, q and v
+inline constexpr const char* kWorkFile = "work.npy";    ///< the work of the run up to each state
 inline constexpr const char* kContactCacheFile =
     "supports.npy";  ///< the contact cache of a state: contacts for the warm start of the next step
 inline constexpr const char* kChecksumsFile = "checksums.npy";  ///< of the tables of states

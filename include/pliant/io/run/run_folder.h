@@ -65,6 +65,7 @@ class RunFolder {
   class Lock;
 
   bool refuse_unless_allowed(Existing existing, const std::filesystem::path& scene) const;
+  std::filesystem::path create_locked(const std::filesystem::path& folder);
   void create(const WriteOptions& write_options);
   void remove_unfinished_files();
   void complete_beginning();

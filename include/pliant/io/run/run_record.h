@@ -13,7 +13,7 @@
 #include <pliant/io/checksums.h>
 #include <pliant/io/run/build_info.h>
 #include <pliant/io/run/estimate_error.h>
-#include <pliant/simulate/simulation.h>
+#include <pliant/io/work_row.h>
 
 namespace pliant {
 
@@ -47,12 +47,13 @@ struct RunRecord {
   std::int64_t steps = 0, steps_done = 0;
   double time = 0;          ///< time of the last state, s
   std::int64_t states = 0;  ///< number of recorded states
-  int resumed = 0;          ///< number of times the run was resumed
+  /// Number of the first recorded states that are on the disk, so that they survive a power cut.
+  std::int64_t durable_states = 0;
+  int resumed = 0;  ///< number of times the run was resumed
 
   // Cost, summed over all sessions of a resumed run.
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, s
-  StepCounters step_counters;
-  Counters counters;
+  RunWork work;
 
   // Monitors and notes.
   double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest stable step, s
