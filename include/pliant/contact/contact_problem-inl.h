@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include <pliant/body/constraint/group.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 #include <pliant/part/local/modal_deformation.h>
@@ -26,6 +27,21 @@ inline Mat3<double> axes(const Contact& contact) {
   Mat3<double> axes;
   axes << contact.normal, t, contact.normal.cross(t);
   return axes;
+}
+
+/// Returns the factors that convert the velocities of a mover to speeds, m/s.
+inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
+  VecX<double> all = VecX<double>::Ones(mover.size);
+  if (mover.node >= 0) return all;
+  const std::vector<int> alone{mover.part};
+  for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
+    const PartModel& m = model.parts()[at(part)];
+    const int first = Movers::first_in(mover, part);
+    for (int k = 3; k < 6 + m.n_s; ++k) all[first + k] = lever(m, k);
+    if (const int n = movers.n_local(part); n > 0)
+      all.segment(movers.first_local(mover, part), n) = local_levers(m).head(n);
+  }
+  return all;
 }
 
 }  // namespace contact_problem
@@ -120,7 +136,7 @@ PLIANT_INLINE void ContactProblem::add_limits() {
           continue;
         system_.add_limit();
         Side side = make_side(part);
-        side.J(0, 6 + k) = -mode;
+        side.J(0, 6 + k) = -mode * lever(m, 6 + k);  // the row is a speed, as those of contacts
         sides_.push_back(std::move(side));
         complete();
       }
@@ -308,7 +324,9 @@ PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_ti
   for (const Mover& mover : movers_.all()) {
     auto displacement = shift_.segment(mover.first, mover.size);
     const auto change = after(mover) - before(mover);
-    if (displacement.norm() > max_time * change.norm()) displacement = limit_time * change;
+    const VecX<double> to_speed = contact_problem::levers(model_, movers_, mover);
+    if (to_speed.cwiseProduct(displacement).norm() > max_time * to_speed.cwiseProduct(change).norm())
+      displacement = limit_time * change;
   }
 }
 

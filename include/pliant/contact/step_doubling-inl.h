@@ -3,6 +3,7 @@
 // contact_stepping.h.
 #pragma once
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_stepping.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
-/// In steps up to this length, s, the error is always measured by the displacement.
+/// In steps up to this length, times slow_rate(), the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
 /// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
@@ -247,7 +248,7 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halve
     dynamics_.coordinate_rates(state.q, v, rate);
     return scale.norm(length * rate);
   };
-  const bool brief = length <= step_doubling::kBriefStep,
+  const bool brief = slow_rate(model) * length <= step_doubling::kBriefStep,
              by_displacement =
                  brief || (jumped && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
   const double end_error =

@@ -203,8 +203,12 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
       coupling.push_rows[at(r)] = movers.row(number_at(system_.used_pushes_[at(r)]));
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
-      if (const int number = number_at(side); number >= 0)
-        coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+      const int number = number_at(side);
+      if (number < 0) continue;
+      const int row = coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+      const Eigen::Map<const Eigen::Matrix3Xd> S(system_.numbers_.data() + side.numbers, 3, side.size);
+      for (int c = 0; c < side.size; ++c)
+        movers.raise_weight(row + c, S.col(c).lpNorm<Eigen::Infinity>());  // m/s per unit of the velocity
     }
   }
   return &movers;
