@@ -81,6 +81,19 @@ def methods():
             "torques": [{"part": "a", "against": "b", "torque": [0, 3, "2 * t"]}]}
 
 
+def stiff_motion():
+    """Stiff, damped parameters in steps that are too long to follow them: the matrices of implicit methods."""
+    stiff = {"a1": {"rest": 0.2, "stiffness": 3e8, "initial": 0.2001}, "a2": 0.15, "a3": 0.4,
+             "twist.angle": {"rest": 0.1, "stiffness": 2e6, "initial_rate": 1}}
+    for method in ("implicit_midpoint", "esdirk"):
+        yield f"stiff_{method}", {
+            "time": timed(0.01, 1e-3, method),
+            "parts": [part("a", "ellipsoid", stiff, deformations=["twist"], beta=1e-4, **moving(0)),
+                      part("b", "box", BOX, position=[0, 0, -0.5])],
+            "springs": [{"from": {"part": "a", "at": TOP}, "to": {"part": "b", "at": TOP}, "stiffness": 4e6,
+                         "damping": 900, "rest_length": 0.3}]}
+
+
 def rigid_contact():
     """Bodies of every shape fall on a plane and on each other."""
     shapes = [("sphere", {"r": 0.2}), ("box", BOX), ("cylinder", {"a1": 0.2, "a2": 0.2, "a3": 0.1}),
@@ -191,6 +204,6 @@ def others():
 def all_cases():
     """Returns the scenes by name."""
     cases = {}
-    for group in (joints, chains, methods, rigid_contact, tolerances, local_deformation, others):
+    for group in (joints, chains, methods, stiff_motion, rigid_contact, tolerances, local_deformation, others):
         cases.update(group())
     return cases

@@ -259,8 +259,10 @@ PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, dou
   H.middleRows<3>(3) += delta_W;
   P_.setZero(n_r(), n_r());
   if (n_s > 0) {
-    const MatX<double> K_inverse = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));
-    P_.rightCols(n_s) = (H - K_inverse.inverse()).transpose().rightCols(n_s);
+    MatX<double> K = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));  // its inverse
+    const VecX<double> scale = equalising_scales(K.diagonal());
+    K = (scale.asDiagonal() * K * scale.asDiagonal()).eval().inverse().eval();
+    P_.rightCols(n_s) = (H - scale.asDiagonal() * K * scale.asDiagonal()).transpose().rightCols(n_s);
     for (Eigen::Index k = 0; k < n_s; ++k)
       if (w.without_inertia.test(static_cast<std::size_t>(6 + k))) {
         P_.row(6 + k).setZero();

@@ -285,19 +285,19 @@ PLIANT_INLINE void StageSolver::linearise(double t, const VecX<double>& q0, cons
     const VecX<double> difference = differences(column);
     VecX<double> change = difference;
     stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::world, change);
-    auto evaluate_column = [&](MatX<double> Cluster::*A) {
+    auto evaluate_column = [&](MatX<double> Cluster::*A, double unit) {
       evaluate(q, v);
       ++step_->counters.evaluations;
       stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::body, v_dot);
-      set_column(column, difference, A);
+      set_column(column, unit * difference, A);
     };
     q = q0;
     advance_coordinates(model_, q, change, 1);
     v = v0;
-    evaluate_column(&Cluster::A_q);
+    evaluate_column(&Cluster::A_q, 1);
     q = q0;
-    v = v0 + change;
-    evaluate_column(&Cluster::A_v);
+    v = v0 + slow_rate(model_) * change;
+    evaluate_column(&Cluster::A_v, slow_rate(model_));
   }
   for (Cluster& cluster : clusters_) {
     const Eigen::Index n = cluster.A_q.rows();
