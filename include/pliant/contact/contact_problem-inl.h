@@ -29,17 +29,18 @@ inline Mat3<double> axes(const Contact& contact) {
   return axes;
 }
 
-/// Returns the factors that convert the velocities of a mover to speeds, m/s.
+/// Returns the factors that make the velocities of a part or island comparable, m: a rotation counts by the
+/// extent of its part, which is twice the size, relative to a displacement.
 inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
-  VecX<double> all = VecX<double>::Ones(mover.size);
-  if (mover.node >= 0) return all;
+  constexpr double of_displacement = 0.5;
+  VecX<double> all = VecX<double>::Constant(mover.size, of_displacement);
   const std::vector<int> alone{mover.part};
   for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
     const PartModel& m = model.parts()[at(part)];
     const int first = Movers::first_in(mover, part);
     for (int k = 3; k < 6 + m.n_s; ++k) all[first + k] = lever(m, k);
     if (const int n = movers.n_local(part); n > 0)
-      all.segment(movers.first_local(mover, part), n) = local_levers(m).head(n);
+      all.segment(movers.first_local(mover, part), n) = of_displacement * local_levers(m).head(n);
   }
   return all;
 }
@@ -324,9 +325,12 @@ PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_ti
   for (const Mover& mover : movers_.all()) {
     auto displacement = shift_.segment(mover.first, mover.size);
     const auto change = after(mover) - before(mover);
-    const VecX<double> to_speed = contact_problem::levers(model_, movers_, mover);
-    if (to_speed.cwiseProduct(displacement).norm() > max_time * to_speed.cwiseProduct(change).norm())
-      displacement = limit_time * change;
+    const bool too_far = [&] {
+      if (mover.node >= 0) return displacement.norm() > max_time * change.norm();
+      const VecX<double> levers = contact_problem::levers(model_, movers_, mover);
+      return levers.cwiseProduct(displacement).norm() > max_time * levers.cwiseProduct(change).norm();
+    }();
+    if (too_far) displacement = limit_time * change;
   }
 }
 

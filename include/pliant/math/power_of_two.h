@@ -17,11 +17,12 @@ inline double power_of_two(double x) {
 /// Returns factors s, powers of two, that equalise the diagonal d of a symmetric matrix: all numbers
 /// s_i^2 |d_i| are between 1 and 8. If other units multiply every d_i by a power of four and all of them by
 /// one power of two, the numbers s_i^2 |d_i| change by one common power of two at most.
-inline VecX<double> equalising_scales(const VecX<double>& d) {
-  VecX<double> s(d.size());
+template <class Vector>
+typename Vector::PlainObject equalising_scales(const Eigen::MatrixBase<Vector>& d) {
   const auto exponent = [&](Eigen::Index i) {
     return d[i] == 0 || !std::isfinite(d[i]) ? 0 : std::ilogb(d[i]);
   };
+  typename Vector::PlainObject s(d.size());
   const int odd = d.size() > 0 ? exponent(0) & 1 : 0;
   for (Eigen::Index i = 0; i < d.size(); ++i) {
     const int sum = exponent(i) + odd;
