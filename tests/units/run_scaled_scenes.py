@@ -24,11 +24,14 @@ from random_scene import random_scene  # noqa: E402
 from run_random_scenes import numbers_of  # noqa: E402
 from scale_scene import Units, scale_scene, size_of_unit  # noqa: E402
 
-# In none of these systems the unit of a speed, acceleration, force, energy, momentum or pressure is unchanged. The
-# powers are even, because an odd power of the mass changes the rounding of square roots of masses.
-SYSTEMS = [Units(2.0**10, 2.0**-8, 2.0**4), Units(2.0**-6, 2.0**14, 2.0**-8)]
-SINGLE = [Units(2.0**10, 1, 1), Units(1, 2.0**-8, 1), Units(1, 2.0**8, 1), Units(1, 1, 2.0**-6), Units(1, 1, 2.0**6),
-          Units(1, 2.0**7, 1)]
+# Systems of units, with the largest difference of a number that is accepted, relative to the largest number of its
+# table. In the first two systems, none of the units of speed, acceleration, force, energy, momentum and pressure is 1.
+# An odd power of the mass changes the rounding of square roots of masses: Cholesky factors, inverse scales, and modes,
+# whose signs may then change. Only scenes of cases.py without modes run in that system.
+EXACT = [(Units(2.0**9, 2.0**-8, 2.0**4), 0), (Units(2.0**-6, 2.0**14, 2.0**-7), 0)]
+ODD_MASS = [(Units(1, 2.0**7, 1), 1e-12)]
+SINGLE = [(units, 0) for units in (Units(2.0**9, 1, 1), Units(2.0**-10, 1, 1), Units(1, 2.0**-8, 1),
+                                   Units(1, 2.0**8, 1), Units(1, 1, 2.0**-6), Units(1, 1, 2.0**7))]
 
 
 def scene_of(name, cases, end):
@@ -46,6 +49,10 @@ def scene_of(name, cases, end):
     time = scene.setdefault("time", {})
     time["end"] = min(time.get("end", 1), end)
     return scene
+
+
+def systems_of(name, cases):
+    return EXACT + (ODD_MASS if name in cases and name != "solid_modes" else [])
 
 
 class Run:
@@ -68,8 +75,8 @@ class Run:
             self.tables = {name: (layout[name], numbers_of(out / name)) for name in ("t.npy", "q.npy", "v.npy")}
 
 
-def difference(plain, other, units):
-    """Describes the largest difference of two runs, relative to the largest number of the table; None if there is none."""
+def difference(plain, other, units, bound):
+    """Describes the largest difference of two runs, relative to the largest number of the table; None up to a bound."""
     if plain.code != other.code or plain.code is None:
         return f"exit codes {plain.code} and {other.code}: {plain.text[-300:]} | {other.text[-300:]}"
     largest, place, first = 0, None, None
@@ -86,7 +93,9 @@ def difference(plain, other, units):
             first = min(first, i // len(columns)) if first is not None else i // len(columns)
             if abs(x - y) >= largest * scale:
                 largest, place = abs(x - y) / scale, columns[i % len(columns)]["name"]
-    return None if place is None else f"{largest:.2g} at {place}, from row {first} on"
+    if place is None or 0 < largest <= bound:
+        return None
+    return f"{largest:.2g} at {place}, from row {first} on"
 
 
 def examine(program, scene, systems, seconds, must_end):
@@ -96,9 +105,9 @@ def examine(program, scene, systems, seconds, must_end):
         plain = Run(program, scale_scene(scene, Units(1, 1, 1)), pathlib.Path(place, "plain"), seconds)
         if must_end and plain.code != 0:
             yield f"exit code {plain.code}: {plain.text[-300:]}"
-        for number, units in enumerate(systems):
+        for number, (units, bound) in enumerate(systems):
             other = Run(program, scale_scene(scene, units), pathlib.Path(place, str(number)), seconds)
-            found = difference(plain, other, units)
+            found = difference(plain, other, units, bound)
             if found is not None:
                 yield f"lengths x {units.length}, masses x {units.mass}, times x {units.time}: {found}"
 
@@ -107,7 +116,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("names", nargs="*")
-    parser.add_argument("--single", action="store_true", help="change one unit at a time, the mass also by 2^7")
+    parser.add_argument("--single", action="store_true", help="change one unit at a time")
     parser.add_argument("--end", type=float, default=0.06, help="longest simulated time of shipped and random scenes")
     parser.add_argument("--seconds", type=float, default=20, help="longest wall time of a run")
     parser.add_argument("--jobs", type=int, default=2)
@@ -115,11 +124,11 @@ def main():
     cases = all_cases()
     shipped = sorted(str(file) for file in SCENES.glob("*.json") if "schema" not in file.name)
     names = arguments.names or [*cases, *shipped]
-    systems = SINGLE if arguments.single else SYSTEMS
     faulty = 0
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         results = pool.map(
-            lambda name: list(examine(arguments.program, scene_of(name, cases, arguments.end), systems,
+            lambda name: list(examine(arguments.program, scene_of(name, cases, arguments.end),
+                                      SINGLE if arguments.single else systems_of(name, cases),
                                       arguments.seconds, not name.startswith("seed"))), names)
         for name, faults in zip(names, results):
             faulty += bool(faults)

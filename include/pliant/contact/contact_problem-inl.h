@@ -29,10 +29,11 @@ inline Mat3<double> axes(const Contact& contact) {
   return axes;
 }
 
-/// Returns the factors that make the velocities of a part or island comparable, m: a rotation counts by the
-/// extent of its part, which is twice the size, relative to a displacement.
+/// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad counts
+/// as a displacement by twice the extent of the part, which is twice its size. With a smaller weight of
+/// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
 inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
-  constexpr double of_displacement = 0.5;
+  constexpr double of_displacement = 0.25;
   VecX<double> all = VecX<double>::Constant(mover.size, of_displacement);
   const std::vector<int> alone{mover.part};
   for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
