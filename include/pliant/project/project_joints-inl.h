@@ -12,7 +12,7 @@
 
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
-#include <pliant/math/power_of_two.h>
+#include <pliant/math/scalar/power_of_two.h>
 #include <pliant/project/projection.h>
 
 namespace pliant {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <pliant/math/power_of_two.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 

@@ -56,6 +56,11 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
                         Eigen::Map<const Eigen::Matrix<double, 3, N>>(TS.data())));
 }
 
+/// Weights the velocities of a side S, from a row of the system on, by the speeds of the contact per unit.
+inline void raise_weights(const Eigen::Map<const Eigen::Matrix3Xd>& S, int row, MoverSystem& movers) {
+  for (int c = 0; c < S.cols(); ++c) movers.raise_weight(row + c, S.col(c).lpNorm<Eigen::Infinity>());
+}
+
 }  // namespace detail
 
 /// Linearises the laws of all contacts with p_n - r u_n > 0 about the present impulses. proximal: weight of
@@ -205,10 +210,9 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const int number = number_at(side);
       if (number < 0) continue;
-      const int row = coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
-      const Eigen::Map<const Eigen::Matrix3Xd> S(system_.numbers_.data() + side.numbers, 3, side.size);
-      for (int c = 0; c < side.size; ++c)
-        movers.raise_weight(row + c, S.col(c).lpNorm<Eigen::Infinity>());  // m/s per unit of the velocity
+      coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+      detail::raise_weights({system_.numbers_.data() + side.numbers, 3, side.size}, coupling.side_rows[at(s)],
+                            movers);
     }
   }
   return &movers;

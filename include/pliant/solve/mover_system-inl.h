@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 
 #include <pliant/math/header_only.h>
-#include <pliant/math/power_of_two.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 

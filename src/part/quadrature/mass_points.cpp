@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <pliant/math/power_of_two.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 #include "rule_search.h"
 

@@ -17,7 +17,7 @@
 #include <pliant/body/step_failure.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
-#include <pliant/math/power_of_two.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 
