@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <pliant/body/multibody.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/index.h>
 
 #include "finder_scratch.h"
@@ -18,16 +19,11 @@ constexpr double kMaxTurnOverPlane = 0.5;
 /// A step that is done is kept if no motion is larger than its limit times this factor.
 constexpr double kToleratedTravel = 1.125;
 
-/// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,
-/// m/s. It treats each rate as that of a length. reach: radius of a ball about the origin that contains the
-/// part, m.
-double shape_speed(const PartModel& m, const State& state, double reach) {
-  return reach * state.v.segment(m.v0 + 6, m.n_s).lpNorm<1>() / m.part->size();
-}
-
-/// Estimates the largest speed of a point of a part relative to the origin of its frame, m/s.
+/// Estimates the largest speed of a point of a part relative to the origin of its frame, m/s. reach: radius
+/// of a ball about the origin that contains the part, m.
 double speed_about_origin(const PartModel& m, const State& state, double reach) {
-  return reach * state.v.segment<3>(m.v0 + 3).norm() + shape_speed(m, state, reach);
+  const auto v = state.v.segment(m.v0, 6 + m.n_s);
+  return reach * v.segment<3>(3).norm() + shape_speed(m, v, reach);
 }
 
 }  // namespace
@@ -83,7 +79,7 @@ std::pair<double, double> ContactFinder::relative_speed(const State& state, int 
     const Placed& there = scratch_->parts[at(i)];
     if (m.q0 < 0) return {Vec3<double>::Zero(), Vec3<double>::Zero(), 0};
     return {state.v.segment<3>(m.v0), there.R * state.v.segment<3>(m.v0 + 3),
-            shape_speed(m, state, there.reach)};
+            shape_speed(m, state.v.segment(m.v0, 6 + m.n_s), there.reach)};
   };
   const Motion a = motion_of(part), b = motion_of(from);
   const Placed &at_a = scratch_->parts[at(part)], &at_b = scratch_->parts[at(from)];

@@ -3,6 +3,8 @@
 
 #include <Eigen/QR>
 
+#include <pliant/math/scalar/power_of_two.h>
+
 namespace pliant {
 
 MatX<double> column_basis(const MatX<double>& A) {
@@ -28,7 +30,9 @@ MatX<double> complement_basis(const MatX<double>& A, double dependent) {
 }
 
 VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b) {
-  return A.colPivHouseholderQr().solve(b);
+  VecX<double> scale = A.colwise().norm().transpose();
+  for (double& s : scale) s = 1 / power_of_two(s);
+  return scale.cwiseProduct((A * scale.asDiagonal()).colPivHouseholderQr().solve(b));
 }
 
 }  // namespace pliant

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/method/dop853.h>
 #include <pliant/method/dormand_prince.h>
 #include <pliant/method/esdirk.h>
@@ -23,13 +24,13 @@ std::unique_ptr<Integrator> make() {
   return std::make_unique<Method>();
 }
 
-/// Returns the error of a step of h s that ends at t (s) and in which a joint closes, in sizes of a part or
-/// sizes per second. The gap decays at the rate of the stabilization (1/s) until it is kClosedGap; the
-/// projection then removes it at once. The time of closing is unknown within the step. The error is therefore
-/// the largest change of the gap, or of the rate of the gap, during the step.
-double closing_error(double rate, double h, double t) {
+/// Returns the error of a step of h s that ends at t (s) and in which a joint closes, in sizes of a part, or
+/// in sizes times `slow` (slow_rate(), 1/s). The gap decays at the rate of the stabilization (1/s) until it
+/// is kClosedGap; the projection then removes it at once. The time of closing is unknown within the step. The
+/// error is therefore the largest change of the gap, or of the rate of the gap, during the step.
+double closing_error(double rate, double slow, double h, double t) {
   const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // of the time, s
-  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate);
+  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate / slow);
 }
 }  // namespace
 
@@ -44,8 +45,9 @@ void Integrator::project(StepContext& step) {
   if (scale_ == nullptr) return;
   for (std::size_t j = 0; j < joints_before_.size(); ++j)
     if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
-      return record_error(closing_error(step.model().body().stabilization.rate, state.h, step.t) /
-                          scale_->tolerance());
+      return record_error(
+          closing_error(step.model().body().stabilization.rate, slow_rate(step.model()), state.h, step.t) /
+          scale_->tolerance());
   unprojected_ -= state.q;
   record_error(scale_->norm(unprojected_));
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include <pliant/body/constraint/group.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 #include <pliant/part/local/modal_deformation.h>
@@ -28,18 +29,35 @@ inline Mat3<double> axes(const Contact& contact) {
   return axes;
 }
 
-/// A parameter is at a limit if its distance is at most this share of the size of the part, or of 1 for a
-/// parameter that is no length.
+/// A parameter is at a limit if its distance, as a displacement, is at most this share of the size of the
+/// part.
 inline constexpr double kAtLimit = 1e-6;
 
 /// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
 inline int near_limit(const PartModel& m, int k, const State& state) {
   const int mode = state.at_limit[at(m.limit0 + k)];
   if (mode != 0) return mode;
-  const bool length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
-  const double distance = kAtLimit * (length ? m.part->size() : 1), value = state.q[m.q0 + 7 + k];
-  if (value - m.limits[at(k)].min <= distance) return -1;
-  return m.limits[at(k)].max - value <= distance ? 1 : 0;
+  const Range& limits = m.limits[at(k)];
+  const double distance = kAtLimit * m.part->size() / lever(m, 6 + k), value = state.q[m.q0 + 7 + k];
+  if (value - limits.min <= distance) return -1;
+  return limits.max - value <= distance ? 1 : 0;
+}
+
+/// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad counts
+/// as a displacement by twice the extent of the part, which is twice its size. With a smaller weight of
+/// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
+inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
+  constexpr double of_displacement = 0.25;
+  VecX<double> all = VecX<double>::Constant(mover.size, of_displacement);
+  const std::vector<int> alone{mover.part};
+  for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
+    const PartModel& m = model.parts()[at(part)];
+    const int first = Movers::first_in(mover, part);
+    for (int k = 3; k < 6 + m.n_s; ++k) all[first + k] = lever(m, k);
+    if (const int n = movers.n_local(part); n > 0)
+      all.segment(movers.first_local(mover, part), n) = of_displacement * local_levers(m).head(n);
+  }
+  return all;
 }
 
 }  // namespace contact_problem
@@ -136,7 +154,7 @@ PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
           continue;
         system_.add_limit();
         Side side = make_side(part);
-        side.J(0, 6 + k) = -mode;
+        side.J(0, 6 + k) = -mode * lever(m, 6 + k);  // the row is a speed, as those of contacts
         sides_.push_back(std::move(side));
         complete();
       }
@@ -324,7 +342,12 @@ PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_ti
   for (const Mover& mover : movers_.all()) {
     auto displacement = shift_.segment(mover.first, mover.size);
     const auto change = after(mover) - before(mover);
-    if (displacement.norm() > max_time * change.norm()) displacement = limit_time * change;
+    const bool too_far = [&] {
+      if (mover.node >= 0) return displacement.norm() > max_time * change.norm();
+      const VecX<double> levers = contact_problem::levers(model_, movers_, mover);
+      return levers.cwiseProduct(displacement).norm() > max_time * levers.cwiseProduct(change).norm();
+    }();
+    if (too_far) displacement = limit_time * change;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/load_work.h>
 #include <pliant/contact/touched_parts.h>
@@ -22,8 +23,8 @@ namespace pliant {
 
 namespace contact_resolution {
 
-/// Overlapping bodies are separated at most at this speed, in sizes of the smaller body per second, plus the
-/// speed of their own travel.
+/// Overlapping bodies are separated at most at this speed, in sizes of the smaller body times slow_rate(),
+/// plus the speed of their own travel.
 inline constexpr double kSeparationSpeed = 1;
 /// Largest number of rounds of a separation. A round may push bodies into others, which the next round
 /// separates.
@@ -107,7 +108,9 @@ PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide
 /// Returns the distance (m) by which a contact may be opened in a step of h seconds: the distance at
 /// kSeparationSpeed plus the travel of its bodies.
 PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contact, double h) const {
-  double distance = contact_resolution::kSeparationSpeed * h * smaller_size(dynamics_.model(), contact);
+  const Model& model = dynamics_.model();
+  double distance =
+      contact_resolution::kSeparationSpeed * (slow_rate(model) * h) * smaller_size(model, contact);
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) distance += travel_[at(side->part)];
   return distance;
@@ -339,13 +342,9 @@ PLIANT_INLINE void ContactResolution::add_ejections(const State& state) {
     const auto change = state.q.segment(m.q0, m.n_q()) - q_before_ejection_.segment(m.q0, m.n_q());
     const double size = m.part->size();
     travel_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * size;
-    for (int k = 0; k < m.n_s; ++k) {
-      const bool length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
-      travel_[i] += (length ? 1 : size) * std::abs(change[7 + k]);
-    }
-    if (m.n_d() == 0) continue;
-    const double unit = m.local->oscillators() != nullptr ? 1 / std::sqrt(m.part->total_mass()) : 1;
-    travel_[i] += unit * change.tail(m.n_d()).lpNorm<Eigen::Infinity>();
+    for (int k = 0; k < m.n_s; ++k) travel_[i] += lever(m, 6 + k) * std::abs(change[7 + k]);
+    if (m.n_d() > 0)
+      travel_[i] += local_levers(m).cwiseProduct(change.tail(m.n_d())).lpNorm<Eigen::Infinity>();
   }
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/impact_timing.h>
 #include <pliant/contact/touched_parts.h>
@@ -20,7 +21,7 @@ namespace pliant {
 namespace friction_events {
 
 /// Slides shorter than this multiple of the tolerance, in sizes of the smaller part, do not matter. A contact
-/// sticks if it slides at most by this distance in a second, plus the speeds of these multiples of the
+/// sticks if it slides at most at this distance times slow_rate(), plus the speeds of these multiples of the
 /// residual of the last contact solution and of rounding.
 inline constexpr double kSlowInTolerances = 1e-2, kSlowInResiduals = 8, kSlowInRounding = 64;
 /// A probe is a motion of this share of the motion that is examined. It shows whether contacts that stick at
@@ -83,6 +84,20 @@ inline double speed(const PartModel& m, const VecX<double>& v) {
   return v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm();
 }
 
+/// Returns the largest entry of the accelerations of all parts, m/s^2.
+inline double largest(const Model& model, const VecX<double>& v_dot) {
+  double largest = 0;
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    largest = std::max(largest, largest_speed(m, v_dot.segment(m.v0, 6 + m.n_s)));
+    if (m.n_d() > 0)
+      largest = std::max(
+          largest,
+          local_levers(m).cwiseProduct(v_dot.segment(m.v0 + 6 + m.n_s, m.n_d())).lpNorm<Eigen::Infinity>());
+  }
+  return largest;
+}
+
 inline Vec3<double> tangential(const Vec3<double>& u, const Contact& contact) {
   return u - u.dot(contact.normal) * contact.normal;
 }
@@ -138,7 +153,7 @@ PLIANT_INLINE void FrictionEvents::find_starts(const Examined& motion, double to
         fastest = std::max(fastest, friction_events::speed(model.parts()[at(side->part)], free.before.v));
   }
   short_ = friction_events::kSlowInTolerances * tolerance * size;
-  slow_ = short_ + friction_events::kSlowInResiduals * free.before.contact_residual +
+  slow_ = slow_rate(model) * short_ + friction_events::kSlowInResiduals * free.before.contact_residual +
           friction_events::kSlowInRounding * std::numeric_limits<double>::epsilon() * fastest;
   for (Start& start : starts_)
     if (start.speed <= slow_) start.direction.setZero();
@@ -273,8 +288,8 @@ PLIANT_INLINE bool FrictionEvents::are_forces_constant(const Examined& motion) {
   dynamics_.accelerations(free.begin + friction_events::kSampledLoads * free.h, before.q, before.v, before,
                           work_);
   motion.step.counters.evaluations += 2;
-  return (work_.v_dot - v_dot).lpNorm<Eigen::Infinity>() <=
-         friction_events::kEqualLoads * v_dot.lpNorm<Eigen::Infinity>();
+  return friction_events::largest(model, work_.v_dot - v_dot) <=
+         friction_events::kEqualLoads * friction_events::largest(model, v_dot);
 }
 
 /// Finds the contacts that begin to slip at the start of the motion: they slide from the start.

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
@@ -199,14 +200,13 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
 }
 
 /// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity is
-/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger. The largest
-/// rate of a local displacement is added.
+/// and the rates of parameters that are no lengths are multiplied by the size of the part. The largest rate
+/// of a local displacement is added.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());
   const double size = m.part->size();
-  double speed = v.head<3>().norm() + size * v.segment<3>(3).norm() +
-                 std::max(1.0, size) * v.segment(6, m.n_s).lpNorm<1>();
+  double speed = v.head<3>().norm() + size * v.segment<3>(3).norm() + shape_speed(m, v, size);
   if (m.local != nullptr)
     speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();
   return speed;

@@ -3,6 +3,7 @@
 // contact_stepping.h.
 #pragma once
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_stepping.h>
 
 #include <algorithm>
@@ -31,12 +32,12 @@ inline constexpr double kAtRestTolerance = 1e-2;
 /// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
 /// A difference is a jump if the results do not agree (agree()) and it exceeds this multiple of the speed
 /// that gravity gives a body in the step. Then the error is measured by the displacement that the jump causes
-/// in the step, if the step is no longer than longest_contact_step() with the default settings.
+/// in the step, if the step, times slow_rate(), is at most longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
-/// In steps up to this length, s, the error is always measured by the displacement.
+/// In steps up to this length, times slow_rate(), the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
 /// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more
@@ -186,9 +187,10 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halve
     dynamics_.coordinate_rates(state.q, v, rate);
     return scale.norm(length * rate);
   };
-  const bool brief = length <= step_doubling::kBriefStep,
+  const double slow = slow_rate(model) * length;  // without unit
+  const bool brief = slow <= step_doubling::kBriefStep,
              by_displacement =
-                 brief || (jumped && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
+                 brief || (jumped && slow <= longest_contact_step(ContactSettings{}, scale.tolerance()));
   const double end_error =
                    by_displacement ? std::max(scale.norm(dq), displacement(dv)) : scale.norm(dq, dv, state.v),
                loss_error = brief ? displacement(halves.gravity_velocities)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/max_or_nan.h>
 
@@ -21,11 +22,8 @@ PLIANT_INLINE ErrorScale::ErrorScale(const Model& model, double tolerance)
       if (m.part->parameters().moving(k).spec->quantity == Quantity::length)
         parameter_[m.v0 + 6 + k] = 1 / size;
     if (m.n_d() == 0) continue;
-    // The amplitudes of modes contain the square root of the mass, kg^(1/2) m.
-    const double amplitude = m.local->oscillators() != nullptr
-                                 ? 1 / std::sqrt(m.part->total_mass())
-                                 : std::sqrt(3.0 / static_cast<double>(m.n_d()));
-    parameter_.segment(m.v0 + 6 + m.n_s, m.n_d()).setConstant(amplitude / size);
+    const double mean = m.local->oscillators() != nullptr ? 1 : std::sqrt(3.0 / static_cast<double>(m.n_d()));
+    parameter_.segment(m.v0 + 6 + m.n_s, m.n_d()) = mean / size * local_levers(m);
   }
 }
 
@@ -41,7 +39,8 @@ void ErrorScale::visit_coordinates(const VecX<double>& q_error, Visit&& visit) c
     const auto other = q_error.segment(m.q0 + 7, m.n_s + m.n_d());
     if (m.n_s > 0)
       visit(other.head(m.n_s).cwiseProduct(scale.head(m.n_s)).lpNorm<Eigen::Infinity>(), m, "the parameters");
-    if (m.n_d() > 0) visit(other.tail(m.n_d()).norm() * scale[m.n_s], m, "the local displacement");
+    if (m.n_d() > 0)
+      visit(other.tail(m.n_d()).cwiseProduct(scale.tail(m.n_d())).norm(), m, "the local displacement");
   }
 }
 
@@ -58,14 +57,17 @@ void ErrorScale::visit_velocities(const VecX<double>& v_error, const VecX<double
     if (m.n_s > 0)
       fastest = std::max(
           fastest, v.segment(m.v0 + 6, m.n_s).cwiseProduct(scale.head(m.n_s)).lpNorm<Eigen::Infinity>());
-    if (m.n_d() > 0) fastest = std::max(fastest, v.segment(m.v0 + 6 + m.n_s, m.n_d()).norm() * scale[m.n_s]);
-    const double time = 1 / (1 + fastest);
+    if (m.n_d() > 0)
+      fastest =
+          std::max(fastest, v.segment(m.v0 + 6 + m.n_s, m.n_d()).cwiseProduct(scale.tail(m.n_d())).norm());
+    const double time = 1 / (slow_rate(*model_) + fastest);
     visit(time * v_error.segment<3>(m.v0).norm() / size, m, "the velocity");
     visit(time * v_error.segment<3>(m.v0 + 3).norm(), m, "the angular velocity");
     if (m.n_s > 0)
       visit(time * other.head(m.n_s).cwiseProduct(scale.head(m.n_s)).lpNorm<Eigen::Infinity>(), m,
             "the rates of the parameters");
-    if (m.n_d() > 0) visit(time * other.tail(m.n_d()).norm() * scale[m.n_s], m, "the local velocity");
+    if (m.n_d() > 0)
+      visit(time * other.tail(m.n_d()).cwiseProduct(scale.tail(m.n_d())).norm(), m, "the local velocity");
   }
 }
 

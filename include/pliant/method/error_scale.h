@@ -1,8 +1,8 @@
 // The norm of the error of a step, in units of the tolerance (README.md of this folder, Error of a step).
 // Each block of the coordinates of a part has its own unit. The unit is the size of the part for the
 // position, for parameters that are lengths, and for the root mean square of the local displacement. The unit
-// of the rotation is the radian. Other parameters keep their own unit. Errors of rates are measured in these
-// units per second and divided by 1 + r, where r is the fastest rate of the part in these units per second.
+// of the rotation is the radian. Other parameters keep their own unit. Errors of rates, in these units per
+// second, are divided by slow_rate() + r, where r is the fastest rate of the part in the same units.
 #pragma once
 
 #include <string>
@@ -37,8 +37,8 @@ class ErrorScale {
 
   const Model* model_;
   double tolerance_;
-  /// For each velocity, the factor that scales the error of the parameter or local coordinate: 1/m or 1, for
-  /// modes 1/(kg^(1/2) m). The entries of c and theta are not used.
+  /// For each velocity, the factor that scales the error of the parameter or local coordinate: 1/m, 1 for
+  /// angles, 1/(kg^(1/2) m) for modes. The entries of c and theta are not used.
   VecX<double> parameter_;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <pliant/body/advance.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/math/header_only.h>
 #include <pliant/method/implicit/implicit_modes.h>
@@ -199,12 +200,12 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   if (scale() != nullptr) {
     q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
-    // The errors of rates of implicit parts are multiplied by h (s), so that they measure displacements in
-    // the step. The step damps oscillations that are too fast for h instead of following them, and these
-    // oscillations also move the frames of their parts.
+    // The errors of rates of implicit parts are multiplied by slow_rate() h, so that they measure
+    // displacements in the step. The step damps oscillations that are too fast for h instead of following
+    // them, and these oscillations also move the frames of their parts.
     for (std::size_t i = 0; i < second_order_parts_.size(); ++i) {
       const PartModel& m = model.parts()[i];
-      if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
+      if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, slow_rate(model) * h);
     }
     record_error(scale()->norm(q_dot_, v_, state.v));
   }

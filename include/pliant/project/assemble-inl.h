@@ -176,7 +176,7 @@ class Assembly {
     MatX<double>&A = w.local->A, &M = w.inertia.M;
     const Eigen::Index n_r = w.local->H0.rows();
     const MatX<double> H = M;
-    M = immovable * H.diagonal().maxCoeff() * MatX<double>::Identity(A.rows(), A.cols());
+    M = immovable * H(0, 0) * MatX<double>::Identity(A.rows(), A.cols());  // H(0, 0): the mass of the part
     M.topLeftCorner(n_r, n_r) = H;
     A.setZero();
     for (Eigen::Index k = 0; k < n_r; ++k) {

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/body/advance.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
@@ -106,8 +107,7 @@ inline void project_frame(StepContext& step, std::size_t i) {
   local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
   for (int iteration = 0;; ++iteration) {
     const VecMax<double> delta = now.solve_transposed(now.violation);
-    if (!(delta.head<3>().norm() > kFrameRounding * size || delta.tail(3 + m.n_s).norm() > kFrameRounding))
-      break;
+    if (!(largest_speed(m, delta) > kFrameRounding * size)) break;
     if (iteration == kMaxFrameIterations) fail_to_follow(m, step);
     if (iteration == 0) p = nodes(now.x, n);
     advance_part(m, state.q, world_velocity(w, delta), 1);

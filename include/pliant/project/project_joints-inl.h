@@ -12,6 +12,7 @@
 
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/scalar/power_of_two.h>
 #include <pliant/project/projection.h>
 
 namespace pliant {
@@ -63,7 +64,10 @@ inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& 
   Vec<double, 6> missing;
   missing << to.R.transpose() * P - now.momentum,
       to.R.transpose() * (from.R * before.angular_momentum + (from.c - to.c).cross(P)) - now.angular_momentum;
-  const Vec<double, 6> rigid = m.local->rigid_inertia(*to.local).ldlt().solve(missing);
+  const Eigen::Matrix<double, 6, 6> inertia = m.local->rigid_inertia(*to.local);
+  const Vec<double, 6> scale = equalising_scales(inertia.diagonal());
+  const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * inertia * scale.asDiagonal();
+  const Vec<double, 6> rigid = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(missing)));
   state.v.segment<3>(m.v0) += to.R * rigid.head<3>();
   state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
 }

@@ -11,6 +11,7 @@
 
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/one_sided_rows.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/math/index.h>
 #include <pliant/math/max_or_nan.h>
@@ -322,7 +323,7 @@ class Projection {
     if (kind == Rows::coordinates) return rounding(joint, work_);
     double size = 0;
     for (const JointSide& side : joint.sides)
-      size = std::max(size, work_.parts[at(side.part)].v_r.template lpNorm<Eigen::Infinity>());
+      size = std::max(size, largest_speed(model_.parts()[at(side.part)], work_.parts[at(side.part)].v_r));
     return kResidual * model_.body().stabilization.rate * joint.length + kRounding * size;
   }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/contact_stepping.h>
 #include <pliant/math/header_only.h>
@@ -31,10 +32,9 @@ inline constexpr double kAtEnd = 1e-9;
 inline constexpr double kMinTravel = 1e-5;
 
 /// Returns an estimate of the distance that a point of a part moves relative to its frame in h seconds, m: by
-/// the angular velocity, and by the rates of the parameters (as rates of lengths).
+/// the angular velocity, and by the rates of the parameters.
 inline double turn(const PartModel& m, const VecX<double>& v, double h, double radius) {
-  return h * radius *
-         (v.segment<3>(m.v0 + 3).norm() + v.segment(m.v0 + 6, m.n_s).lpNorm<1>() / m.part->size());
+  return h * (radius * v.segment<3>(m.v0 + 3).norm() + shape_speed(m, v.segment(m.v0, 6 + m.n_s), radius));
 }
 
 /// Returns a box around a ball, m.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pliant/body/speed_scale.h>
 #include <pliant/math/header_only.h>
 #include <pliant/part/local/nodal_deformation.h>
 
@@ -55,7 +56,7 @@ PLIANT_INLINE double first_step(StepContext& step, const ErrorScale& scale, int 
   dynamics.coordinate_rates(state.q, state.v, q_dot);
   const VecX<double> v_dot = work.v_dot;
   const double tolerance = scale.tolerance(), rate = tolerance * scale.norm(q_dot, v_dot, state.v);
-  double h = rate > 0 ? 0.01 / rate : 1e-3;
+  double h = rate > 0 ? 0.01 / rate : 1e-3 / slow_rate(dynamics.model());
   // Change of the rates during this step, divided by h.
   dynamics.accelerations(state.time() + h, state.q + h * q_dot, state.v + h * v_dot, state, work);
   dynamics.coordinate_rates(state.q + h * q_dot, state.v + h * v_dot, q_dot_end);

@@ -8,6 +8,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <pliant/math/scalar/power_of_two.h>
+
 namespace pliant {
 
 namespace detail {
@@ -113,8 +115,9 @@ class ActiveSet {
     Matrix block(n_, n_);
     for (int i = 0; i < n_; ++i)
       for (int j = 0; j < n_; ++j) block(i, j) = W_(active_[i], active_[j]);
-    const Eigen::LDLT<Matrix> factor(block);
-    x = factor.solve(x);
+    const Vector scale = equalising_scales(block.diagonal());
+    const Eigen::LDLT<Matrix> factor(scale.asDiagonal() * block * scale.asDiagonal());
+    x = scale.cwiseProduct(factor.solve(scale.cwiseProduct(x)));
   }
   /// Recomputes the impulses of the active rows, so that rounding does not accumulate over many changes.
   void refine() {

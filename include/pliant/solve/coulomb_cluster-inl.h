@@ -93,8 +93,8 @@ PLIANT_INLINE void CoulombCluster::set_scale() {
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
-      terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
-                                  system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
+      const auto x = system_.x_.segment(side.first, side.size);
+      terms = std::max(terms, (J.cwiseAbs() * x.cwiseAbs()).maxCoeff());
     }
   }
   const bool rough = has_point_masses_ && !tolerance_.share;

@@ -56,6 +56,11 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
                         Eigen::Map<const Eigen::Matrix<double, 3, N>>(TS.data())));
 }
 
+/// Weights the velocities of a side S, from a row of the system on, by the speeds of the contact per unit.
+inline void raise_weights(const Eigen::Map<const Eigen::Matrix3Xd>& S, int row, MoverSystem& movers) {
+  for (int c = 0; c < S.cols(); ++c) movers.raise_weight(row + c, S.col(c).lpNorm<Eigen::Infinity>());
+}
+
 }  // namespace detail
 
 /// Linearises the laws of all contacts with p_n - r u_n > 0 about the present impulses. proximal: weight of
@@ -203,8 +208,11 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
       coupling.push_rows[at(r)] = movers.row(number_at(system_.used_pushes_[at(r)]));
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.used_sides_[at(s)];
-      if (const int number = number_at(side); number >= 0)
-        coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+      const int number = number_at(side);
+      if (number < 0) continue;
+      coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+      detail::raise_weights({system_.numbers_.data() + side.numbers, 3, side.size}, coupling.side_rows[at(s)],
+                            movers);
     }
   }
   return &movers;

@@ -11,10 +11,14 @@
 #include <Eigen/LU>
 
 #include <pliant/math/header_only.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 
 namespace detail {
+
+/// Weight of the rows of velocities that no contact sees.
+inline constexpr double kLeastWeight = 0x1p-200;
 
 /// Inserts i into a sorted list unless the list contains it.
 inline void insert_sorted(std::vector<int>& sorted, int i) {
@@ -79,6 +83,7 @@ PLIANT_INLINE bool MoverSystem::order(double max_fill) {
       for (const int i : movers_[at(k)].neighbours) targets_.push_back(block(i, j).first);
   numbers_.resize(static_cast<Eigen::Index>(numbers));
   b_.resize(row);
+  weight_.setConstant(row, detail::kLeastWeight);
   return true;
 }
 
@@ -100,13 +105,24 @@ PLIANT_INLINE void MoverSystem::clear() {
     Eigen::Map<MatX<double>>(numbers_.data() + mover.numbers, mover.size, mover.size).setIdentity();
 }
 
+template <int N>
+Eigen::Matrix<double, N, N> MoverSystem::inverse_of(const Mover& k) const {
+  using Numbers = Eigen::Matrix<double, N, N>;
+  Numbers A = Eigen::Map<const Numbers>(numbers_.data() + k.numbers, k.size, k.size);
+  if constexpr (N == 3) return A.inverse();  // without pivots
+  Eigen::Matrix<double, N, 1> weight = weight_.segment<N>(k.row, k.size);
+  for (double& w : weight) w = power_of_two(w);
+  A = (weight.asDiagonal() * A * weight.cwiseInverse().asDiagonal()).eval();
+  return weight.cwiseInverse().asDiagonal() * Numbers(A.inverse()) * weight.asDiagonal();
+}
+
 /// Eliminates mover k: x_k = (1 + A_kk)^-1 (b_k - sum of A_kj x_j over its remaining neighbours).
 template <int N>
 void MoverSystem::eliminate(const Mover& k) {
   using Numbers = Eigen::Matrix<double, N, N>;
   using BlockMap = Eigen::Map<Numbers>;
   double* numbers = numbers_.data();
-  const Numbers inverse = BlockMap(numbers + k.numbers, k.size, k.size).inverse();
+  const Numbers inverse = inverse_of<N>(k);
   const Eigen::Matrix<double, N, 1> b = inverse * b_.segment<N>(k.row, k.size);
   b_.segment<N>(k.row, k.size) = b;
   const std::size_t* target = targets_.data() + k.targets;

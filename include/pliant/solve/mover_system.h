@@ -3,6 +3,7 @@
 // is always the mover with the fewest remaining neighbours.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <pliant/math/types.h>
@@ -34,6 +35,9 @@ class MoverSystem {
     std::size_t first;
     int stride;  ///< from column to column
   };
+  /// Raises the weight of a row: the factor that makes its velocity comparable with those of other rows. The
+  /// elimination pivots on weighted rows. A row whose weight was never raised is no pivot of other columns.
+  void raise_weight(int row, double weight) { weight_[row] = std::max(weight_[row], weight); }
   /// Returns the storage of the block A_ij. The movers i and j must be equal or coupled.
   Block block(int i, int j) const;
 
@@ -72,12 +76,16 @@ class MoverSystem {
   /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
   template <int N>
   void eliminate(const Mover& k);
+  /// Returns the inverse of the diagonal block of a mover.
+  template <int N>
+  Eigen::Matrix<double, N, N> inverse_of(const Mover& k) const;
 
   std::vector<Mover> movers_;
   std::vector<int> sequence_;         // movers in the order of elimination
   std::vector<std::size_t> targets_;  // for each mover: storage of the blocks of its pairs of neighbours
   VecX<double> numbers_;              // the entries of 1 + A, in the order of elimination
   VecX<double> b_;
+  VecX<double> weight_;  // of each row
 };
 
 }  // namespace pliant

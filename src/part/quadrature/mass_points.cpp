@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <pliant/math/scalar/power_of_two.h>
+
 #include "rule_search.h"
 
 namespace pliant {
@@ -124,6 +126,7 @@ class MassIntegrands {
       double square = 0;
       auto x = c < all.L.cols() ? Eigen::Ref<Eigen::VectorXd>(all.L.col(c))
                                 : Eigen::Ref<Eigen::VectorXd>(all.acceleration);
+      x /= power_of_two(x.lpNorm<Eigen::Infinity>());  // squares of tiny numbers would underflow
       for (std::size_t k = 0; k < points.size(); ++k)
         square += points[k].mass * x.segment<3>(3 * static_cast<Eigen::Index>(k)).squaredNorm();
       if (square > 0) x *= std::sqrt(mass / square);

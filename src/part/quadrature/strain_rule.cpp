@@ -222,7 +222,7 @@ class StrainIntegrands {
   }
 
   /// Returns the root mean squares of the integrands over the body in state `number`. The result is infinity
-  /// for an integrand whose root mean square is at most 1e-10 times that of the stiffness.
+  /// for an energy or a force whose root mean square is at most 1e-10 times that of the stiffness.
   const Densities& units(int number, const State& state) const {
     const auto known = units_.size();
     if (static_cast<std::size_t>(number) < known) return units_[static_cast<std::size_t>(number)];
@@ -233,9 +233,10 @@ class StrainIntegrands {
       for (std::size_t c = 0; c < kEach; ++c) squares[c] += sample_[k].mass * density[c] * density[c];
     });
     constexpr double noise = 1e-10;
-    constexpr std::size_t stiffness = 2;
+    constexpr std::size_t stiffness = 2, volume = 3;
     const double min_square = noise * noise * squares[stiffness];
-    for (double& square : squares) square = square > min_square ? std::sqrt(square / mass) : kInfinity;
+    for (std::size_t c = 0; c < kEach; ++c)
+      squares[c] = squares[c] > (c == volume ? 0 : min_square) ? std::sqrt(squares[c] / mass) : kInfinity;
     units_.push_back(squares);
     return units_.back();
   }

@@ -184,7 +184,8 @@ Record time_record() {
        optional("tolerance", number(between(kMinTolerance, kMaxTolerance), "1"),
                 "Bound on the error of a step, which then controls the step length. Its unit is the size "
                 "of the part for lengths and the radian for angles; for rates it is this unit per "
-                "second, or per a shorter time scale of the part. When absent, it "
+                "time T, or per a shorter time scale of the part. T is 10 / rate with the \"rate\" of "
+                "\"stabilization\", normally 1 s. When absent, the tolerance "
                 "is 1e-6 with the integrator \"auto\"; with the others all steps have the length \"step\"."),
        optional("solver",
                 choice({{"auto", "chosen for each island of parts by a fixed cost model"},

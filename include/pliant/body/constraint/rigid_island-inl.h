@@ -301,8 +301,12 @@ PLIANT_INLINE double RigidIsland::largest_gap(const Rounding& allowed, bool posi
     for (const End& end : joint.ends) {
       if (end.arm >= 0) {
         for (int r = 0; r < 3; ++r) C[r] += sign * now.arms[at(end.arm)].x[r][end.lane];
-        size = std::max(size, positions ? x.segment<3>(end.q0).lpNorm<Eigen::Infinity>()
-                                        : x.segment<6>(end.v0).lpNorm<Eigen::Infinity>());
+        size = std::max(size, x.segment<3>(positions ? end.q0 : end.v0).lpNorm<Eigen::Infinity>());
+        if (!positions) {
+          const double reach =
+              joint.length + detail::lane_of(arms_[at(end.arm)].r, end.lane).lpNorm<Eigen::Infinity>();
+          size = std::max(size, reach * x.segment<3>(end.v0 + 3).lpNorm<Eigen::Infinity>());
+        }
       }
       sign = -1;
     }

@@ -77,8 +77,8 @@ class RigidIsland {
 
   /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and |C_dot| <=
   /// per_length * rate * length + per_size * |v|. length: JointModel::length; |c|, |v|: the largest entries
-  /// of c and of the velocities of the parts of the joint. per_length and per_size have no unit. rate
-  /// (1/s) converts an allowed gap to an allowed rate of the gap.
+  /// of c, and of c_dot and of omega times the distance to the joint. per_length and per_size have no unit.
+  /// rate (1/s) converts an allowed gap to an allowed rate of the gap.
   struct Rounding {
     double per_length, per_size, rate;
   };

@@ -15,6 +15,7 @@
 
 #include <pliant/body/step_failure.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 
@@ -258,8 +259,10 @@ PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, dou
   H.middleRows<3>(3) += delta_W;
   P_.setZero(n_r(), n_r());
   if (n_s > 0) {
-    const MatX<double> K_inverse = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));
-    P_.rightCols(n_s) = (H - K_inverse.inverse()).transpose().rightCols(n_s);
+    MatX<double> K = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));  // its inverse
+    const VecX<double> scale = equalising_scales(K.diagonal());
+    K = (scale.asDiagonal() * K * scale.asDiagonal()).eval().inverse().eval();
+    P_.rightCols(n_s) = (H - scale.asDiagonal() * K * scale.asDiagonal()).transpose().rightCols(n_s);
     for (Eigen::Index k = 0; k < n_s; ++k)
       if (w.without_inertia.test(static_cast<std::size_t>(6 + k))) {
         P_.row(6 + k).setZero();
@@ -296,7 +299,12 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
         S_r(6 + k, 6 + k) += 1;
       }
   }
-  core_.compute(core);
+  core_scale_ = equalising_scales(core.diagonal());
+  core_.compute(core_scale_.asDiagonal() * core * core_scale_.asDiagonal());
+}
+
+PLIANT_INLINE MatX<double> ImplicitNodes::solve_core(const MatX<double>& b) const {
+  return core_scale_.asDiagonal() * core_.solve(MatX<double>(core_scale_.asDiagonal() * b));
 }
 
 PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& nodal) const {
@@ -352,7 +360,7 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   factor_->solve(y_);
   right_.head(n_r()) += B_.leftCols(n_r()).transpose() * e_;
   right_ -= B_.transpose() * y_;
-  const VecX<double> z = core_.solve(right_);
+  const VecX<double> z = solve_core(right_);
   y_ -= T_ * z;
   change_.setZero();
   if (frame_in_border()) {
@@ -372,7 +380,7 @@ PLIANT_INLINE MatX<double> ImplicitNodes::compliance() const {
   MatX<double> right = MatX<double>::Zero(B_.cols(), n_r() + n_p), A(n_r() + n_p, n_r() + n_p);
   if (frame_in_border()) right.block(n_r(), 0, n_r(), n_r()).setIdentity();
   if (n_p > 0) right.rightCols(n_p) -= B_Z_;
-  const MatX<double> z = core_.solve(right);
+  const MatX<double> z = solve_core(right);
   if (frame_in_border()) {
     A.topRows(n_r()) = z.middleRows(n_r(), n_r());
   } else {
@@ -391,7 +399,7 @@ PLIANT_INLINE void ImplicitNodes::push(const VecX<double>& g, Eigen::Ref<VecX<do
   VecX<double> right = VecX<double>::Zero(B_.cols());
   if (frame_in_border()) right.segment(n_r(), n_r()) = g.head(n_r());
   if (n_p > 0) right -= B_Z_ * g.tail(n_p);
-  d_ddot -= T_ * core_.solve(right);
+  d_ddot -= T_ * solve_core(right);
   if (n_p > 0) d_ddot += Z_ * g.tail(n_p);
 }
 
@@ -399,7 +407,7 @@ PLIANT_INLINE void ImplicitNodes::respond(VecX<double>& on_frame, Eigen::Ref<Vec
   factor_->solve(on_d);
   VecX<double> right = -B_.transpose() * on_d;
   if (frame_in_border()) right.segment(n_r(), n_r()) += on_frame;
-  const VecX<double> z = core_.solve(right);
+  const VecX<double> z = solve_core(right);
   on_d -= T_ * z;
   if (frame_in_border())
     on_frame = z.segment(n_r(), n_r());

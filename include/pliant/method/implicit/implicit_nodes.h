@@ -64,6 +64,8 @@ class ImplicitNodes final : public ImplicitPart {
   VecX<double> damping_excess(const VecX<double>& r_q_s, const VecX<double>& r_q) const;
   /// Computes and factors the Schur complement of S.
   void make_core(const LocalWorkspace& w);
+  /// Returns the Schur complement's inverse times b.
+  MatX<double> solve_core(const MatX<double>& b) const;
   /// Returns the values of fields at the attachment points of joints, three rows a point. nodal: one field
   /// over the local coordinates in each column.
   MatX<double> at_joints(const MatX<double>& nodal) const;
@@ -80,13 +82,14 @@ class ImplicitNodes final : public ImplicitPart {
   MatX<double> Z_;           ///< S^-1 N^T with the interpolation N of at_joints()
   MatX<double> B_Z_, N_T_;   ///< B^T Z, N T
   MatX<double> core_fixed_;  ///< the constant part of the Schur complement of S
-  Eigen::PartialPivLU<MatX<double>> core_;
-  MatX<double> J_Q_;         ///< J^T Q over the global parameters
-  MatX<double> K_s_, D_s_;   ///< blocks of K_r and D_r of the global parameters
-  MatX<double> P_, M_r_;     ///< P, and G^T M G - P - P^T
-  VecX<double> x_;           ///< x of the factor, m; used if the stiffness changes
-  MatX<double> J_;           ///< J of the factor; used if the stiffness changes
-  MatX<double> H0_inverse_;  ///< inverse of H0; used if x_r is not in the border
+  VecX<double> core_scale_;  ///< powers of two that equalise the diagonal of the Schur complement
+  Eigen::PartialPivLU<MatX<double>> core_;  ///< factor of the Schur complement, with scaled rows and columns
+  MatX<double> J_Q_;                        ///< J^T Q over the global parameters
+  MatX<double> K_s_, D_s_;                  ///< blocks of K_r and D_r of the global parameters
+  MatX<double> P_, M_r_;                    ///< P, and G^T M G - P - P^T
+  VecX<double> x_;                          ///< x of the factor, m; used if the stiffness changes
+  MatX<double> J_;                          ///< J of the factor; used if the stiffness changes
+  MatX<double> H0_inverse_;                 ///< inverse of H0; used if x_r is not in the border
   VecX<double> e_, y_, right_;
 };
 

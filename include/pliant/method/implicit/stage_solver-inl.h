@@ -13,9 +13,11 @@
 #include <Eigen/Geometry>
 
 #include <pliant/body/advance.h>
+#include <pliant/body/speed_scale.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
+#include <pliant/math/scalar/power_of_two.h>
 
 namespace pliant {
 
@@ -33,7 +35,8 @@ inline constexpr int kMaxMatrices = 4;
 /// Changes that do not shrink and are at most this, in sizes of the part and radians, are rounding.
 inline constexpr double kRounding = 1e-12;
 /// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
-/// lengths and local coordinates, 1 for angles and other parameters.
+/// lengths and local coordinates, this size times the square root of the mass for modes, 1 for angles and
+/// other parameters.
 inline constexpr double kDifference = 1e-7;
 /// The iteration has converged if the last change and the expected remaining change are at most this, in
 /// tolerances.
@@ -109,6 +112,12 @@ PLIANT_INLINE StageSolver::StageSolver(const Model& model)
     for (int k = 0; k < m.n_s; ++k)
       if (m.part->parameters().moving(k).spec->quantity != Quantity::length)
         difference_[m.v0 + 6 + k] = stage_solver::kDifference;
+    if (m.n_d() > 0) difference_.segment(m.v0 + 6 + m.n_s, m.n_d()).array() /= local_levers(m).array();
+  }
+  for (Cluster& cluster : clusters_) {
+    cluster.scale.resize(static_cast<Eigen::Index>(cluster.velocities.size()));
+    for (Eigen::Index i = 0; i < cluster.scale.size(); ++i)
+      cluster.scale[i] = power_of_two(difference_[cluster.velocities[static_cast<std::size_t>(i)]]);
   }
   for (const Cluster& cluster : clusters_)
     max_free_iterations_ = std::max(
@@ -199,7 +208,7 @@ PLIANT_INLINE void StageSolver::correct(const VecX<double>& q, VecX<double>& rho
       right_ = (c_ * cluster.A_q * right_).eval();
       for (Eigen::Index i = 0; i < n; ++i)
         right_[i] += rho_v[cluster.velocities[static_cast<std::size_t>(i)]];
-      right_ = cluster.factor.solve(right_).eval();
+      right_ = cluster.factor.solve(right_.cwiseQuotient(cluster.scale)).cwiseProduct(cluster.scale).eval();
       for (Eigen::Index i = 0; i < n; ++i) rho_v[cluster.velocities[static_cast<std::size_t>(i)]] = right_[i];
     }
     stage_solver::rotate_velocities(model_, q, stage_solver::Frame::world, rho_v);
@@ -274,23 +283,24 @@ PLIANT_INLINE void StageSolver::linearise(double t, const VecX<double>& q0, cons
     const VecX<double> difference = differences(column);
     VecX<double> change = difference;
     stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::world, change);
-    auto evaluate_column = [&](MatX<double> Cluster::*A) {
+    auto evaluate_column = [&](MatX<double> Cluster::*A, double unit) {
       evaluate(q, v);
       ++step_->counters.evaluations;
       stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::body, v_dot);
-      set_column(column, difference, A);
+      set_column(column, unit * difference, A);
     };
     q = q0;
     advance_coordinates(model_, q, change, 1);
     v = v0;
-    evaluate_column(&Cluster::A_q);
+    evaluate_column(&Cluster::A_q, 1);
     q = q0;
-    v = v0 + change;
-    evaluate_column(&Cluster::A_v);
+    v = v0 + slow_rate(model_) * change;
+    evaluate_column(&Cluster::A_v, slow_rate(model_));
   }
   for (Cluster& cluster : clusters_) {
     const Eigen::Index n = cluster.A_q.rows();
-    cluster.factor.compute(MatX<double>::Identity(n, n) - c_ * cluster.A_v - c_ * c_ * cluster.A_q);
+    const MatX<double> matrix = MatX<double>::Identity(n, n) - c_ * cluster.A_v - c_ * c_ * cluster.A_q;
+    cluster.factor.compute(cluster.scale.cwiseInverse().asDiagonal() * matrix * cluster.scale.asDiagonal());
     ++step_->counters.factorisations;
   }
   has_matrix_ = true;

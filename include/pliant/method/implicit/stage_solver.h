@@ -43,6 +43,8 @@ class StageSolver {
     std::vector<int> parts;
     std::vector<Eigen::Index> velocities;  ///< indices of the velocities of these parts in v
     MatX<double> A_q, A_v;
+    VecX<double> scale;  ///< powers of two near the scales of these velocities
+    /// Factor of the matrix for velocities in units of their scales. The pivots thus do not depend on units.
     Eigen::PartialPivLU<MatX<double>> factor;
   };
   /// Iterates until q and v have converged, until a fixed number of iterations is reached, or until a new

@@ -1,0 +1,54 @@
+// Scales that compare velocities of different units: m/s, rad/s, and rates of parameters.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <pliant/body/model.h>
+
+namespace pliant {
+
+/// Returns the factor (m or 1) that converts velocity k of v_r of a part, k < 6 + n_s, to a speed, m/s: 1 for
+/// c_dot and for rates of lengths, the size of the part for omega and for rates of other parameters.
+inline double lever(const PartModel& m, int k) {
+  if (k < 3) return 1;
+  if (k < 6 || m.part->parameters().moving(k - 6).spec->quantity != Quantity::length) return m.part->size();
+  return 1;
+}
+
+/// Returns the factors that convert the local coordinates of a part to lengths, m: 1 for nodes, the size of
+/// the part for angles of an energy, 1 / kg^(1/2) for modes, whose amplitudes contain the square root of
+/// mass.
+inline VecX<double> local_levers(const PartModel& m) {
+  if (m.local->oscillators() != nullptr)
+    return VecX<double>::Constant(m.n_d(), 1 / std::sqrt(m.part->total_mass()));
+  VecX<double> levers = VecX<double>::Constant(m.n_d(), m.part->size());
+  levers.head(3 * m.local->mesh().X.rows()).setOnes();
+  return levers;
+}
+
+/// Returns the largest entry of v, as a speed, m/s. v: the first 6 + n_s velocities of a part.
+template <class V>
+double largest_speed(const PartModel& m, const V& v) {
+  double largest = std::max(v.template head<3>().template lpNorm<Eigen::Infinity>(),
+                            m.part->size() * v.template segment<3>(3).template lpNorm<Eigen::Infinity>());
+  for (int k = 6; k < 6 + m.n_s; ++k) largest = std::max(largest, lever(m, k) * std::abs(v[k]));
+  return largest;
+}
+
+/// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,
+/// m/s. v: the first 6 + n_s velocities of the part. reach: largest distance of a point from the origin, m.
+template <class V>
+double shape_speed(const PartModel& m, const V& v, double reach) {
+  double speed = 0;
+  for (int k = 6; k < 6 + m.n_s; ++k) speed += lever(m, k) * std::abs(v[k]);
+  return m.n_s == 0 ? 0 : reach / m.part->size() * speed;
+}
+
+/// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, normally 1/s. It
+/// defines the unit of time where nothing else does.
+inline double slow_rate(const Model& model) {
+  return 0.1 * model.body().stabilization.rate;
+}
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// Powers of two as scales. Multiplication by a power of two rounds no number, so that a factorisation of a
+// scaled matrix has the rounding errors of the original matrix, and pivots that do not depend on units.
+#pragma once
+
+#include <cmath>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// Returns the largest power of two that is at most |x|; 1 if x is zero or not finite.
+inline double power_of_two(double x) {
+  if (x == 0 || !std::isfinite(x)) return 1;
+  return std::ldexp(1.0, std::ilogb(x));
+}
+
+/// Returns factors s, powers of two, that equalise the diagonal d of a symmetric matrix: all numbers
+/// s_i^2 |d_i| are between 1 and 8. If other units multiply every d_i by a power of four and all of them by
+/// one power of two, the numbers s_i^2 |d_i| change by one common power of two at most.
+template <class Vector>
+typename Vector::PlainObject equalising_scales(const Eigen::MatrixBase<Vector>& d) {
+  const auto exponent = [&](Eigen::Index i) {
+    return d[i] == 0 || !std::isfinite(d[i]) ? 0 : std::ilogb(d[i]);
+  };
+  typename Vector::PlainObject s(d.size());
+  const int odd = d.size() > 0 ? exponent(0) & 1 : 0;
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    const int sum = exponent(i) + odd;
+    s[i] = std::ldexp(1.0, -(sum - (sum & 1)) / 2);
+  }
+  return s;
+}
+
+}  // namespace pliant

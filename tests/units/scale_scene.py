@@ -1,0 +1,163 @@
+"""Expresses a scene in other units: multiplies each number that has a dimension by the power of its units.
+
+The units are powers of two, so that no number is rounded. A key that OBJECTS does not list is an error; a new key of a
+scene therefore needs an entry here.
+"""
+
+import collections
+import re
+
+# One metre, one kilogram and one second in the new units.
+Units = collections.namedtuple("Units", "length mass time")
+
+NAMED_UNITS = {"N": "kg m / s^2", "Pa": "kg / m s^2"}
+LENGTHS = {"r", "l", "a1", "a2", "a3", "b1"}  # the parameters that are lengths; all others have no dimension
+SEMI_AXES = {"a1": 1, "a2": 1, "a3": 1}
+DEFAULT_LENGTHS = {"superellipsoid": SEMI_AXES, "superellipsoid_radial": SEMI_AXES, "ellipsoid": SEMI_AXES,
+                   "cylinder": SEMI_AXES, "cone": SEMI_AXES, "box": SEMI_AXES, "sphere": {"r": 1},
+                   "capsule": {"r": 0.5, "l": 1}, "supertoroid": {"a1": 0.25, "a2": 0.25, "a3": 0.25}}
+
+# The keys of each object of a scene with their units. A value is a unit, KEEP for values without unit, or the name of
+# another object in brackets.
+KEEP = ""
+OBJECTS = {
+    "scene": {"name": KEEP, "description": KEEP, "gravity": "m/s^2", "time": "[time]", "parts": "[part]",
+              "joints": "[joint]", "stabilization": "[stabilization]", "contact": "[contact]",
+              "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "output": "[output]"},
+    "time": {"end": "s", "step": "s", "integrator": KEEP, "tolerance": KEEP, "solver": KEEP},
+    "part": {"name": KEEP, "shape": KEEP, "deformations": KEEP, "shell": KEEP, "thickness": "m", "local": "[local]",
+             "mass": "kg", "inertia": "[inertia]", "position": "m", "orientation": KEEP, "velocity": "m/s",
+             "angular_velocity": "1/s", "fixed": KEEP, "motion": "[motion]", "resolution": KEEP,
+             "elasticity": "[law]", "alpha": "1/s", "beta": "s", "drag": "1/s"},
+    "local": {"basis": KEEP, "degree": KEEP, "modes": KEEP, "resolution": KEEP, "order": KEEP, "laws": "[law]",
+              "alpha": "1/s", "beta": "s", "dents": "[dent]"},
+    "law": {"type": KEEP, "E": "Pa", "nu": KEEP, "thickness": "m", "w0": "N/m^3", "w1": "N/m", "p": "Pa",
+            "p0": "Pa", "p_ext": "Pa", "gamma": KEEP},
+    "dent": {"at": "m", "radius": "m", "displacement": "m", "velocity": "m/s"},
+    "inertia": {"mass": "kg", "moments": "kg m^2", "centre": "m"},
+    "motion": {"position": "m", "turn": "[turn]"},
+    "turn": {"axis": KEEP, "angle": "rad"},
+    "joint": {"type": KEEP, "name": KEEP, "from": "[point]", "to": "[point]", "length": "m", "axis": KEEP,
+              "from_axis": KEEP, "rotation": KEEP, "on": "s", "off": "s"},
+    "point": {"part": KEEP, "at": "[place]", "world": "m"},
+    "place": {"u": KEEP, "v": KEEP, "w": KEEP, "direction": KEEP, "near": "m", "patch": "m"},
+    "stabilization": {"rule": KEEP, "rate": "1/s", "stab_alpha": "1/s", "stab_beta": "1/s", "speed": KEEP,
+                      "assembly": KEEP, "projection": KEEP},
+    "contact": {"friction": KEEP, "restitution": KEEP, "tolerance": KEEP, "longest_step": "s", "interval": "s",
+                "sleep": "[sleep]", "planes": "[plane]", "obstacles": "[obstacle]", "pairs": KEEP, "groups": KEEP,
+                "impacts": KEEP, "between_parts": KEEP},
+    "sleep": {"speed": "m/s", "after": "s"},
+    "plane": {"name": KEEP, "point": "m", "normal": KEEP, "on": "s", "off": "s"},
+    "obstacle": {"name": KEEP, "mesh": KEEP, "half_extents": "m", "scale": "m", "position": "m",
+                 "orientation": KEEP, "on": "s", "off": "s"},
+    "spring": {"name": KEEP, "from": "[point]", "to": "[point]", "stiffness": "N/m", "damping": "N s/m",
+               "rest_length": "m"},
+    "force": {"name": KEEP, "part": KEEP, "at": "[place]", "force": "N", "frame": KEEP},
+    "torque": {"name": KEEP, "part": KEEP, "against": KEEP, "torque": "N m", "frame": KEEP},
+    "output": {"frame_rate": "1/s"},
+}
+# Keys for pictures, which are left out.
+PICTURES = {"$schema", "//", "tracks", "coloring", "camera", "light", "ground", "color", "visible", "shown", "size",
+            "every_part", "contacts"}
+# Values with a unit that a scene may leave out.
+DEFAULTS = {
+    "scene": {"gravity": [0, 0, -9.81], "time": {}, "stabilization": {}, "output": {}},
+    "time": {"end": 1},
+    "stabilization": {"rate": 10},
+    "contact": {"longest_step": 2e-3, "interval": 0.0078125},
+    "sleep": {"after": 0.5},
+    "obstacle": {"scale": 1},
+    "output": {"frame_rate": 25},
+}
+
+
+def size_of_unit(unit, units):
+    """The size of a unit such as "kg m / s^2" or "kg^(1/2) m" in the new units."""
+    result, sign = 1.0, 1
+    for word in re.findall(r"[A-Za-z]+(?:\^(?:\d+|\(1/2\)))?|/", unit):
+        if word == "/":
+            sign = -1
+            continue
+        name, _, exponent = word.partition("^")
+        if name in NAMED_UNITS:
+            size = size_of_unit(NAMED_UNITS[name], units)
+        else:
+            size = {"m": units.length, "kg": units.mass, "s": units.time, "rad": 1.0}[name]
+        result *= size**(sign * (0.5 if exponent == "(1/2)" else int(exponent or 1)))
+    return result
+
+
+def scaled(value, factor, units):
+    """A number, a function of time, or a list of them, in the new units."""
+    if isinstance(value, str):
+        return f"{factor!r} * ({re.sub(r'(?<![A-Za-z_])t(?![A-Za-z_0-9])', f'({1 / units.time!r} * t)', value)})"
+    if isinstance(value, list):
+        return [scaled(entry, factor, units) for entry in value]
+    if isinstance(value, dict):  # key frames
+        factors = {"t": units.time, "end_rates": factor / units.time}
+        return {key: scaled(entry, factors.get(key, factor), units) for key, entry in value.items()}
+    return value * factor
+
+
+def size_of_parameter(name, units):
+    return units.length if name.split(".")[-1] in LENGTHS else 1.0
+
+
+def scaled_parameters(part, units):
+    """The parameters of a part; a stiffness is an energy divided by the squared unit of the parameter."""
+    energy, result = size_of_unit("N m", units), {}
+    for name, value in {**DEFAULT_LENGTHS[part["shape"]], **part.get("parameters", {})}.items():
+        size = size_of_parameter(name, units)
+        if not isinstance(value, dict) or "t" in value:
+            result[name] = scaled(value, size, units)
+            continue
+        factors = {"dynamic": None, "initial_rate": size / units.time, "stiffness": energy / size**2}
+        result[name] = {key: entry if key == "dynamic" else scaled(entry, factors.get(key, size), units)
+                        for key, entry in value.items()}
+    return result
+
+
+def scaled_stiffness_matrix(matrix, units):
+    names, energy = matrix["parameters"], size_of_unit("N m", units)
+    sizes = [size_of_parameter(name, units) for name in names]
+    return {"parameters": names,
+            "K": [[entry * (energy / (sizes[i] * sizes[j])) for j, entry in enumerate(row)]
+                  for i, row in enumerate(matrix["K"])]}
+
+
+def scaled_part(part, materials, units):
+    part = {**materials.get(part.get("material"), {}), **part}
+    part.pop("material", None)
+    if not {"mass", "inertia"} & part.keys():
+        per_area = part.get("shell", False) and "thickness" not in part
+        part["density"] = part.get("density", 1000) * size_of_unit("kg/m^2" if per_area else "kg/m^3", units)
+    own = {"density": part.pop("density", None), "parameters": scaled_parameters(part, units)}
+    part.pop("parameters", None)
+    if "stiffness_matrix" in part:
+        own["stiffness_matrix"] = scaled_stiffness_matrix(part.pop("stiffness_matrix"), units)
+    return {**scaled_object("part", part, units), **{key: value for key, value in own.items() if value is not None}}
+
+
+def scaled_object(kind, values, units):
+    if isinstance(values, list):
+        return [scaled_object(kind, entry, units) for entry in values]
+    result = {}
+    for key, value in {**DEFAULTS.get(kind, {}), **values}.items():
+        if key in PICTURES:
+            continue
+        unit = OBJECTS[kind][key]
+        if unit.startswith("["):
+            result[key] = scaled_object(unit[1:-1], value, units)
+        elif unit == KEEP:
+            result[key] = value
+        else:
+            result[key] = scaled(value, size_of_unit(unit, units), units)
+    return result
+
+
+def scale_scene(scene, units):
+    """Returns the scene in the new units."""
+    materials = scene.get("materials", {})
+    scene = {key: value for key, value in scene.items() if key != "materials"}
+    parts = [scaled_part(part, materials, units) for part in scene.pop("parts")]
+    return {**scaled_object("scene", scene, units), "parts": parts}
