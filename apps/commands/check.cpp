@@ -25,21 +25,22 @@ struct CheckCommand {
 };
 
 // Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
-// run for kTrial seconds of wall-clock time, at least one step. If they do not reach the end of the run, the
-// second half of this time is extrapolated, because the first steps to a tolerance are short.
+// run for a second of wall-clock time, or for 0.4 s if nothing can touch. If they do not reach the end of the
+// run, the last third of this time is extrapolated, because the first steps to a tolerance are short, and
+// because contacts become more in the course of a run.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
-  constexpr double kTrial = 0.2;
+  const double trial = simulation.model().body().contact.active ? 1.0 : 0.4;
   const pliant::WallClock::time_point start = pliant::WallClock::now();
-  double seconds = 0, half_seconds = 0, half_time = 0;
-  while (!pliant::at_end(simulation, schedule) && seconds < kTrial) {
+  double seconds = 0, first_seconds = 0, first_time = 0;
+  while (!pliant::at_end(simulation, schedule) && seconds < trial) {
     pliant::scheduled_step(simulation, schedule);
     seconds = pliant::seconds_since(start);
-    if (seconds > kTrial / 2) continue;
-    half_seconds = seconds;
-    half_time = simulation.time();
+    if (3 * seconds > 2 * trial) continue;
+    first_seconds = seconds;
+    first_time = simulation.time();
   }
   if (pliant::at_end(simulation, schedule)) return seconds;
-  const double rate = (seconds - half_seconds) / (simulation.time() - half_time);
+  const double rate = (seconds - first_seconds) / (simulation.time() - first_time);
   return seconds + rate * (schedule.end() - simulation.time());
 }
 

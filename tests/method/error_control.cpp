@@ -3,8 +3,10 @@
 // method.
 #include "catch.h"
 
+#include <ctime>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include <pliant/body/joints/string.h>
 #include <pliant/part/local/local_laws.h>
@@ -272,6 +274,26 @@ TEST_CASE("the trials of a choice can be stopped, and have a limited number of e
   Simulation(whole, kAutomatic, 1, 1e-6, [&] { return ++unlimited < 0; });
   CHECK(unlimited >= 96);
   CHECK(evaluation_cost(*body.parts()[0]) > 0);
+}
+
+TEST_CASE("the trials of a large model end after some seconds", "[error][long]") {
+  // Each evaluation takes about 20 ms. Without a limit, the trials take at least 96 steps of 12 evaluations.
+  MultiBody body;
+  for (int i = 0; i < 20; ++i) {
+    Part& part = test::add(body, "part" + std::to_string(i), "cylinder", {"bend", "twist"}, 1000);
+    part.rest({{"a1", 0.2}, {"a2", 0.2}}).limits("bend.angle", {-2, 2}).place({2.0 * i, 0, 0});
+    part.stiffness({{"a1", 1e4}, {"bend.angle", 1e3}, {"twist.angle", 1e3}});
+  }
+  int steps = 0;
+  const std::clock_t start = std::clock();
+  const Simulation simulation(body, kAutomatic, 1, 1e-6, [&] { return ++steps < 0; });
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  CAPTURE(steps, seconds, simulation.choice().why);
+  CHECK(steps >= 2);
+  CHECK(steps < 60);
+#ifndef PLIANT_SANITIZED
+  CHECK(seconds < 30);
+#endif
 }
 
 TEST_CASE("the method is chosen by the stiffness of the model, the tolerance and the contacts", "[error]") {

@@ -6,11 +6,10 @@
 #include <Eigen/Cholesky>
 
 #include <pliant/math/eigenvalues.h>
-#include <pliant/part/sum_inertia.h>
 
 #include "beta_moments.h"
+#include "doubling_error.h"
 #include "random_state.h"
-#include "worst.h"
 
 namespace mass_test {
 
@@ -311,51 +310,6 @@ TEST_CASE("M is symmetric and positive definite, and the inertial forces conserv
       }
 }
 
-namespace {
-
-/// Returns a state within the declared ranges of the dynamic parameters. Lengths are between half and twice
-/// their rest values; other parameters are at most 5 in absolute value. corner: 0 for the largest values, 1
-/// for the smallest ones, else random values.
-test::RandomState random_in_range(Draws& draws, const Part& part, int corner) {
-  const Parameters& all = part.parameters();
-  const int n = all.n_dynamic();
-  test::RandomState state{VecMax<double>(n), VecMax<double>(n), draws.vector(2)};
-  for (int k = 0; k < n; ++k) {
-    const Parameter& p = all.moving(k);
-    const double rest = p.rest_value();
-    const double low = p.spec->relative ? 0.5 * rest : std::max(p.limits.min, -5.0);
-    const double high = p.spec->relative ? 2 * rest : std::min(p.limits.max, 5.0);
-    state.q_s[k] = corner == 0 ? high : (corner == 1 ? low : draws.uniform(low, high));
-    state.q_s_dot[k] = draws.uniform(-1, 1) * (p.spec->relative ? rest : 1.0);
-  }
-  return state;
-}
-
-/// Returns the largest change of M and g_q, relative to their scale, if the number of quadrature nodes along
-/// each direction is doubled. part: a prepared part. trials: number of states.
-double doubling_error(const Part& part, int trials) {
-  Draws draws(3);
-  const MassPoints finer = place_mass_points(part, 1);
-  test::Worst worst;
-  for (int trial = 0; trial < trials; ++trial) {
-    const test::RandomState state = random_in_range(draws, part, trial);
-    Inertia<double> a, b;
-    Counters counters;
-    sum_inertia(part, part.mass_points(), state.q_s, state.q_s_dot, state.omega, a, counters);
-    sum_inertia(part, finer, state.q_s, state.q_s_dot, state.omega, b, counters);
-    const VecX<double> scale = b.M.diagonal().cwiseSqrt();
-    const double force = (VecX<double>(b.g_q).array() / scale.array()).abs().maxCoeff();
-    for (Eigen::Index i = 0; i < scale.size(); ++i) {
-      worst.note(std::abs(a.g_q[i] - b.g_q[i]) / (scale[i] * force));
-      for (Eigen::Index j = 0; j <= i; ++j)
-        worst.note(std::abs(a.M(i, j) - b.M(i, j)) / (scale[i] * scale[j]));
-    }
-  }
-  return worst;
-}
-
-}  // namespace
-
 TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only: frozen exponents",
           "[mass][long]") {
   const std::vector<std::vector<std::string>> chains{{},       {"taper"},       {"twist"},
@@ -373,7 +327,7 @@ TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only:
         INFO(test::describe(shell ? "shell" : "solid", chain)
              << " " << eps[0] << " " << eps[1] << " " << part->mass_points().rule << " "
              << part->mass_points().n_points);
-        CHECK(doubling_error(*part, 4) <= 1e-12);
+        CHECK(test::doubling_error(*part, 4) <= 1e-12);
       }
 }
 
@@ -389,7 +343,7 @@ TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only:
         part->prepare();
         INFO(test::describe(face->name(), chain)
              << (shell ? " shell " : " ") << part->mass_points().rule << " " << part->mass_points().n_points);
-        CHECK(doubling_error(*part, 3) <= 1e-12);
+        CHECK(test::doubling_error(*part, 3) <= 1e-12);
       }
 }
 
@@ -423,7 +377,7 @@ TEST_CASE(
            << " " << part->parameters().n_dynamic() << (shell ? " shell " : " solid ")
            << part->mass_points().rule << " " << part->mass_points().n_points);
       CHECK(part->mass_points().relative_error == 0);
-      CHECK(doubling_error(*part, 6) <= 1e-12);
+      CHECK(test::doubling_error(*part, 6) <= 1e-12);
     }
 }
 
@@ -438,7 +392,7 @@ TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only:
       part->prepare();
       INFO(eps << (shell ? " shell " : " solid ") << part->mass_points().rule << " "
                << part->mass_points().n_points);
-      CHECK(doubling_error(*part, 6) <= 1e-12);
+      CHECK(test::doubling_error(*part, 6) <= 1e-12);
     }
 }
 

@@ -37,35 +37,42 @@ inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
 /// These steps are at most of second order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Estimated time of a trial, microseconds, after which it ends, and the least number of evaluations of a
-/// trial. Small models do not reach this time.
-inline constexpr double kTrialTime = 5e6, kMinEvaluations = 100;
+/// Estimated time of a trial, microseconds, after which it ends, and the least cost of a trial, evaluations.
+/// Small models do not reach this time.
+inline constexpr double kTrialTime = 2e6, kMinCost = 30;
 /// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
 
-/// Returns the largest number of evaluations of a trial.
-inline double most_evaluations(const Model& model) {
-  double cost = 0;
+/// Returns the largest cost of a trial, evaluations.
+inline double max_cost(const Model& model) {
+  double evaluation = 0;
   for (const PartModel& m : model.parts())
-    if (m.q0 >= 0) cost += evaluation_cost(*m.part);
-  return std::max(kMinEvaluations, kTrialTime / std::max(cost, 1.0));
+    if (m.q0 >= 0) evaluation += evaluation_cost(*m.part);
+  return std::max(kMinCost, kTrialTime / std::max(evaluation, 1.0));
 }
 
-/// Returns the simulated time (s) per cost of a trial of a method; 0 if the method fails. The cost is the
-/// number of evaluations of the accelerations, plus the cost of factorisations and solves in evaluations.
-/// factorisation: cost of one factorisation, in evaluations.
+/// Returns the cost of steps, in evaluations of the accelerations. factorisation: cost of one factorisation.
+inline double cost_of(const StepCounters& counters, int steps, double factorisation) {
+  return static_cast<double>(counters.evaluations) +
+         factorisation * (static_cast<double>(counters.factorisations) + kSolves * steps);
+}
+
+/// Returns the simulated time (s) per cost of a trial of a method; 0 if the method fails. factorisation: cost
+/// of one factorisation, in evaluations.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                    double factorisation, const std::function<bool()>& stop) {
   State state = start;
   Workspace<double> work;
-  StepCounters counters, before;
+  StepCounters counters;
   const int order = method.error_order();
   const StepError failed{std::numeric_limits<double>::infinity(), order, 0};
   method.measure(&scale);
-  const double max_evaluations = most_evaluations(dynamics.model());
+  const double most = max_cost(dynamics.model());
+  int steps = 0;
+  auto too_long = [&] { return cost_of(counters, steps, factorisation) > most; };
   auto attempt = [&] {
     if (stop && stop()) throw ChoiceStopped();
-    if (static_cast<double>(counters.evaluations) > max_evaluations) return failed;
+    if (too_long()) return failed;
     try {
       StepContext step(dynamics, state, work, counters);
       method.step(step);
@@ -83,23 +90,17 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
   const int max_steps = growth.rarely ? kStepsWithFactors : kSteps;
   const double end = start.time() + kMaxTrialTime;
   double timed_from = start.time();
-  int first_timed = 0, steps = 0;
-  for (; steps < max_steps && state.time() < end; ++steps) {
-    if (static_cast<double>(counters.evaluations) > max_evaluations) break;
+  double cost_before = 0;
+  for (; steps < max_steps && state.time() < end && !too_long(); ++steps) {
     if (steps == max_steps / kShares) {
       timed_from = state.time();
-      first_timed = steps;
-      before = counters;
+      cost_before = cost_of(counters, steps, factorisation);
     }
-    if (!take_controlled_step(state, end, 0, growth, counters, attempt)) {
-      if (!(static_cast<double>(counters.evaluations) > max_evaluations)) return 0;
-      break;
-    }
+    if (take_controlled_step(state, end, 0, growth, counters, attempt)) continue;
+    if (!too_long()) return 0;
+    break;
   }
-  const auto evaluations = static_cast<double>(counters.evaluations - before.evaluations),
-             factored = static_cast<double>(counters.factorisations - before.factorisations);
-  return (state.time() - timed_from) /
-         (evaluations + factorisation * (factored + kSolves * (steps - first_timed)));
+  return (state.time() - timed_from) / (cost_of(counters, steps, factorisation) - cost_before);
 }
 
 }  // namespace integrator_choice

@@ -2,7 +2,6 @@
 #include "rest_rules.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -62,110 +61,6 @@ struct PlaneMoments {
   }
 };
 
-/// Returns a sine or cosine from the logarithm of its absolute value, the derivative of this logarithm, and
-/// the sign. The derivative of the logarithm is finite where the value underflows.
-Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
-  const double value = sign * std::exp(log_abs);
-  Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};
-  t.x.d[0] = value * log_slope;
-  t.log_abs.d[0] = log_slope;
-  return t;
-}
-/// Returns a sine or cosine with its derivative.
-Trig<Dual<1>> with_slope(double value, double slope) {
-  const Trig<double> t = trig(value);
-  Trig<Dual<1>> r{Dual<1>(value), Dual<1>(t.sign), Dual<1>(t.log_abs)};
-  r.x.d[0] = slope;
-  r.log_abs.d[0] = value != 0 ? slope / value : 0;
-  return r;
-}
-
-/// Adds m equidistant nodes of a periodic panel to `nodes`.
-void add_periodic_nodes(const Panel& panel, int m, std::vector<AngleNode>& nodes) {
-  for (int i = 0; i < m; ++i) {
-    const double angle = panel.from + (panel.to - panel.from) * (i + 0.5) / m;
-    const double c = std::cos(angle), s = std::sin(angle);
-    nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) / m});
-  }
-}
-
-/// Adds n Gauss nodes of a panel on which the shape is smooth in the angle to `nodes`.
-void add_smooth_nodes(const Panel& panel, int n, std::vector<AngleNode>& nodes) {
-  for (const QuadratureNode& node : gauss_rule(n)) {
-    const double angle = panel.from + (panel.to - panel.from) * node.x;
-    const double c = std::cos(angle), s = std::sin(angle);
-    nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) * node.weight});
-  }
-}
-
-/// A panel from a coordinate axis to 45 degrees, with the variable t = |near|^eps in [0, 2^(-eps/2)]. `near`
-/// is the sine or cosine that vanishes at the axis, and `far` is the other function.
-class PowerPanel {
- public:
-  PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
-
-  /// Adds n nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near
-  /// with many decay rates. The nodes are dense near 45 degrees, where y is smallest. The smallest t is about
-  /// e^-37, which is rounding relative to 1.
-  void add_for_all_powers(int n) {
-    const double reach = 37 / panel_.eps;
-    for (const QuadratureNode& node : one_end_rule(n, 3)) {
-      const double log_near = kMiddle - reach * node.x;
-      add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * reach * node.weight);
-    }
-  }
-  /// Adds nodes for a fixed exponent: n nodes, or 2 n if eps is below 0.25. The integrand consists of powers
-  /// of t^(2/eps); with t = x^q and q a multiple of eps, these powers are smooth in x.
-  void add_for_fixed_power(int n) {
-    double reach = std::exp2(-panel_.eps / 2);
-    if (panel_.eps < 0.25) {
-      // The superellipse is nearly a square, and the integrand varies only next to the corner at 45 degrees,
-      // where log near is the suitable variable. For near < e^-16, far is 1 to within rounding.
-      const double to = -16;
-      for (const QuadratureNode& node : gauss_rule(n)) {
-        const double log_near = kMiddle + (to - kMiddle) * node.x;
-        add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * (kMiddle - to) * node.weight);
-      }
-      reach = std::exp(panel_.eps * to);
-    }
-    for (const QuadratureNode& node : one_end_rule(n, panel_.eps * std::ceil(3 / panel_.eps)))
-      add(std::log(reach * node.x) / panel_.eps, reach * node.weight);
-  }
-
- private:
-  void add(double log_near, double weight) {
-    const double near2 = std::exp(2 * log_near), far2 = -std::expm1(2 * log_near);
-    const double log_near_slope = std::exp(-panel_.eps * log_near) / panel_.eps;  // 1 / (eps t)
-    const double log_far_slope = -near2 * log_near_slope / far2;
-    const double sign_near = panel_.along_sin ? panel_.sign_sin : panel_.sign_cos;
-    const double sign_far = panel_.along_sin ? panel_.sign_cos : panel_.sign_sin;
-    const Trig<Dual<1>> near = from_log(log_near, log_near_slope, sign_near);
-    const Trig<Dual<1>> far = from_log(0.5 * std::log(far2), log_far_slope, sign_far);
-    nodes_.push_back(panel_.along_sin ? AngleNode{far, near, weight} : AngleNode{near, far, weight});
-  }
-
-  const double kMiddle = std::log(std::sqrt(0.5));  // log near at 45 degrees
-  const Panel& panel_;
-  std::vector<AngleNode>& nodes_;
-};
-
-/// Returns the nodes of panels: n in each panel, but 2 n in a periodic panel and in a power panel with a
-/// fixed exponent below 0.25. dynamic_exponents: whether an exponent is a degree of freedom.
-std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool dynamic_exponents) {
-  std::vector<AngleNode> nodes;
-  for (const Panel& panel : panels) {
-    if (panel.kind == Panel::Kind::periodic)
-      add_periodic_nodes(panel, 2 * n, nodes);
-    else if (panel.kind == Panel::Kind::smooth)
-      add_smooth_nodes(panel, n, nodes);
-    else if (dynamic_exponents)
-      PowerPanel(panel, nodes).add_for_all_powers(n);
-    else
-      PowerPanel(panel, nodes).add_for_fixed_power(n);
-  }
-  return nodes;
-}
-
 /// Returns a sine or cosine with its derivative along material direction number `slot`.
 Trig<Dual<3>> lift(const Trig<Dual<1>>& t, std::size_t slot) {
   Trig<Dual<3>> r{Dual<3>(t.x.v), Dual<3>(t.sign.v), Dual<3>(t.log_abs.v)};
@@ -176,6 +71,16 @@ Trig<Dual<3>> lift(const Trig<Dual<1>>& t, std::size_t slot) {
 /// Returns a sine or cosine without its derivative.
 Trig<double> drop(const Trig<Dual<1>>& t) {
   return {t.x.v, t.sign.v, t.log_abs.v};
+}
+
+/// Four of the eight mirror images by the coordinate planes. They have the zero first moments and products of
+/// inertia of all eight.
+constexpr std::array<MirrorSigns, 4> kImages{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
+
+Trig<double> times_sign(Trig<double> t, double sign) {
+  t.x *= sign;
+  t.sign *= sign;
+  return t;
 }
 
 /// Returns whether the rings of a shape are plane, from a sample. Rings of a shape of the user need not be
@@ -201,9 +106,44 @@ RestShape::RestShape(const Part& whole)
       a(rest.b.data()),
       follows(pliant::follows(whole)),
       dynamic_exponents(has_dynamic_exponent(whole)) {
+  if (dynamic_exponents) find_kinks();
   by_sections = !part.shell() && follows <= Follows::section && part.shape().has_sections();
   points_apart =
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
+}
+
+void RestShape::find_kinks() {
+  // Material points of the trigonometric map have kinks at 45 degrees only, for all exponents.
+  if (!part.shape().bounded_exponents()) return;
+  // In the radial map, the edges of a superellipsoid move over the material when its exponents change. With
+  // y = log |tan| of the angles u and v at rest, and rest exponents eps, the edges along v are at y = 0, and
+  // the edges along u are between y = 0 and y = log 2 / 2 (eps2_now - eps2) / eps1. Their widths in y are
+  // proportional to the exponents.
+  std::vector<Range> values;
+  std::vector<double> at_rest;
+  for (int i = 0; i < part.parameters().size(); ++i) {
+    const Parameter& p = part.parameters()[i];
+    if (p.spec->quantity != Quantity::exponent) continue;
+    at_rest.push_back(rest.b[static_cast<std::size_t>(i)]);
+    values.push_back(p.dynamic ? p.limits : Range{at_rest.back(), at_rest.back()});
+  }
+  if (values.size() != 2) return;
+  const double far = std::log(2.0) / 2 / at_rest[0];
+  along_u.from = far * std::min(values[1].min - at_rest[1], 0.0);
+  along_u.to = far * std::max(values[1].max - at_rest[1], 0.0);
+  along_u.width = kPi / 2 * std::min(values[0].min / at_rest[0], 1.0);
+  along_v.width = kPi / 2 * std::min(values[1].min / at_rest[1], 1.0);
+}
+
+bool octant_panels(const RestShape& r) {
+  const auto power = [](const Panel& panel) { return panel.kind == Panel::Kind::power; };
+  const std::vector<Panel> u = r.part.shape().profile(r.a, r.dynamic_exponents),
+                           v = r.part.shape().ring(r.a, r.dynamic_exponents);
+  return std::all_of(u.begin(), u.end(), power) && std::all_of(v.begin(), v.end(), power);
+}
+
+Material<double> mirrored(const Material<double>& m, const MirrorSigns& signs) {
+  return {m.cu, times_sign(m.su, signs[2]), times_sign(m.cv, signs[0]), times_sign(m.sv, signs[1]), m.w};
 }
 
 std::vector<SliceNode> slice_nodes(const RestShape& r, int n) {
@@ -245,11 +185,29 @@ void add_slice(const RestShape& r, const SliceNode& node, std::vector<RestPoint>
     out.push_back({shape.label({p[0], p[1], z}, r.a), moments.m / 3});
 }
 
+namespace {
+
+std::vector<AngleNode> angle_nodes(const RestShape& r, const std::vector<Panel>& panels, int n,
+                                   const Kinks& kinks) {
+  return r.dynamic_exponents ? angle_nodes(panels, n, kinks) : angle_nodes(panels, n);
+}
+
+}  // namespace
+
 std::vector<AngleNode> profile_nodes(const RestShape& r, int n) {
-  return angle_nodes(r.part.shape().profile(r.a, r.dynamic_exponents), n, r.dynamic_exponents);
+  std::vector<Panel> panels = r.part.shape().profile(r.a, r.dynamic_exponents);
+  if (r.octant)
+    panels.erase(std::remove_if(panels.begin(), panels.end(), [](const Panel& p) { return p.sign_sin < 0; }),
+                 panels.end());
+  return angle_nodes(r, panels, n, r.along_u);
 }
 std::vector<AngleNode> ring_nodes(const RestShape& r, int n) {
-  return angle_nodes(r.part.shape().ring(r.a, r.dynamic_exponents), n, r.dynamic_exponents);
+  std::vector<Panel> panels = r.part.shape().ring(r.a, r.dynamic_exponents);
+  if (r.octant)
+    panels.erase(std::remove_if(panels.begin(), panels.end(),
+                                [](const Panel& p) { return p.sign_cos < 0 || p.sign_sin < 0; }),
+                 panels.end());
+  return angle_nodes(r, panels, n, r.along_v);
 }
 std::vector<QuadratureNode> depth_nodes(const RestShape& r, int n) {
   if (r.part.shell()) return {{1, 0, 1}};
@@ -291,36 +249,80 @@ Material<double> on_ring(const AngleNode& u, const QuadratureNode& w, const Eige
   return {drop(u.c), drop(u.s), coordinate(p[0]), coordinate(p[1]), w.x};
 }
 
-}  // namespace
-
-void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
-              const std::vector<AngleNode>& v_nodes, std::vector<RestPoint>& out) {
-  const ShapeInterface& shape = r.part.shape();
-  const double ring_exponent = shape.ring_exponent(r.a);
-  const RingTangents nodes(r, u, w, v_nodes);
+/// Returns the masses of the points of a ring, for density 1.
+Eigen::VectorXd ring_masses(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
+                            const std::vector<AngleNode>& v, const RingTangents& nodes) {
   const std::vector<Mat3<double>> F = r.part.chain_gradient(nodes.e, r.rest);
-  PlaneMoments ring;
-  for (std::size_t k = 0; k < v_nodes.size(); ++k) {
-    const AngleNode& v = v_nodes[k];
+  Eigen::VectorXd masses(static_cast<Eigen::Index>(v.size()));
+  for (std::size_t k = 0; k < v.size(); ++k) {
     const Mat3<double> deformed = F[k] * nodes.tangents[k];
     if (F[k].determinant() < 0) throw_folded(r.part, "rest");
     const double measure =
         r.part.shell() ? deformed.col(0).cross(deformed.col(1)).norm() : std::abs(deformed.determinant());
-    const double mass = measure * u.weight * v.weight * w.weight;
-    const auto column = static_cast<Eigen::Index>(k);
-    if (r.points_apart) {
-      const Material<double> m{drop(u.c), drop(u.s), drop(v.c), drop(v.s), w.x};
-      out.push_back({shape.from_rest_map(m, r.a), mass});
-    } else if (r.follows == Follows::ring) {
-      ring.add(mass, signed_power(drop(v.c), ring_exponent), signed_power(drop(v.s), ring_exponent));
-    } else {
-      ring.add(mass, nodes.e(0, column), nodes.e(1, column));
-    }
+    masses[static_cast<Eigen::Index>(k)] = measure * u.weight * v[k].weight * w.weight;
   }
-  if (r.points_apart || ring.m == 0) return;
-  for (const Eigen::Vector2d& p : ring.points()) {
-    const Material<double> m = r.follows == Follows::ring ? on_ring(u, w, p, ring_exponent)
-                                                          : shape.label({p[0], p[1], nodes.e(2, 0)}, r.a);
+  return masses;
+}
+
+/// Returns the coordinates (columns) in which displacements are affine along a ring: (C_v^eps, S_v^eps),
+/// where eps is the exponent of the ring, if the shape follows rings; else (x, y).
+Eigen::Matrix2Xd ring_coordinates(const RestShape& r, const std::vector<AngleNode>& v,
+                                  const RingTangents& nodes) {
+  if (r.follows != Follows::ring) return nodes.e.topRows<2>();
+  const double ring_exponent = r.part.shape().ring_exponent(r.a);
+  Eigen::Matrix2Xd p(2, nodes.e.cols());
+  for (std::size_t k = 0; k < v.size(); ++k)
+    p.col(static_cast<Eigen::Index>(k)) << signed_power(drop(v[k].c), ring_exponent),
+        signed_power(drop(v[k].s), ring_exponent);
+  return p;
+}
+
+/// Appends the points of a ring, one for each node of v, or four mirror images for each node if r.octant.
+void add_points_apart(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
+                      const std::vector<AngleNode>& v_nodes, const Eigen::VectorXd& masses,
+                      std::vector<RestPoint>& out) {
+  for (std::size_t k = 0; k < v_nodes.size(); ++k) {
+    const AngleNode& v = v_nodes[k];
+    const double mass = masses[static_cast<Eigen::Index>(k)];
+    const Material<double> m =
+        r.part.shape().from_rest_map({drop(u.c), drop(u.s), drop(v.c), drop(v.s), w.x}, r.a);
+    if (r.octant)
+      for (const MirrorSigns& signs : kImages) out.push_back({mirrored(m, signs), 2 * mass});
+    else
+      out.push_back({m, mass});
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd ring_moments(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
+                             const std::vector<AngleNode>& v) {
+  const RingTangents nodes(r, u, w, v);
+  const Eigen::ArrayXd m = ring_masses(r, u, w, v, nodes);
+  const Eigen::Matrix2Xd p = ring_coordinates(r, v, nodes);
+  const Eigen::ArrayXd x = p.row(0), y = p.row(1);
+  Eigen::MatrixXd moments(m.size(), 6);
+  moments << m, m * x, m * y, m * x * x, m * x * y, m * y * y;
+  return moments;
+}
+
+void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
+              const std::vector<AngleNode>& v, std::vector<RestPoint>& out) {
+  const RingTangents nodes(r, u, w, v);
+  const Eigen::VectorXd masses = ring_masses(r, u, w, v, nodes);
+  if (r.points_apart) {
+    add_points_apart(r, u, w, v, masses, out);
+    return;
+  }
+  const ShapeInterface& shape = r.part.shape();
+  const Eigen::Matrix2Xd p = ring_coordinates(r, v, nodes);
+  PlaneMoments ring;
+  for (Eigen::Index k = 0; k < masses.size(); ++k) ring.add(masses[k], p(0, k), p(1, k));
+  if (ring.m == 0) return;
+  for (const Eigen::Vector2d& three : ring.points()) {
+    const Material<double> m = r.follows == Follows::ring
+                                   ? on_ring(u, w, three, shape.ring_exponent(r.a))
+                                   : shape.label({three[0], three[1], nodes.e(2, 0)}, r.a);
     out.push_back({m, ring.m / 3});
   }
 }

@@ -4,11 +4,14 @@
 // chooses the nodes.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <pliant/math/quadrature.h>
 #include <pliant/part/mesh/folds.h>
 #include <pliant/part/part.h>
+
+#include "angle_nodes.h"
 
 namespace pliant {
 
@@ -29,10 +32,16 @@ struct RestShape {
   bool by_sections;   ///< whether the rule uses slices; else it uses rings
   bool points_apart;  ///< whether each point of a ring moves independently; else three points represent the
                       ///< ring
+  Kinks along_u, along_v;  ///< for dynamic exponents
+  bool octant = false;     ///< whether nodes along u and v cover one octant, and each node has four points
+  /// Returns the number of points of each node of v, if points_apart.
+  std::size_t images() const { return octant ? 4 : 1; }
+
+ private:
+  void find_kinks();
 };
 
-// Nodes along one direction. n: number of nodes in a panel. The number is 2 n in a periodic panel and in a
-// panel with a fixed exponent below 0.25.
+// Nodes along one direction. n: number of nodes in a panel (angle_nodes.h has exceptions).
 
 /// A plane section at zeta = z / h, and its weight. h: half height of the shape.
 struct SliceNode {
@@ -44,18 +53,25 @@ std::vector<SliceNode> slice_nodes(const RestShape& shape, int n);
 /// Throws std::invalid_argument if the rest shape folds over there.
 void add_slice(const RestShape& shape, const SliceNode& node, std::vector<RestPoint>& out);
 
-/// A node along a material angle: cosine and sine with their derivatives by the variable of the rule.
-struct AngleNode {
-  Trig<Dual<1>> c, s;
-  double weight;
-};
+/// Signs of the coordinates x, y and z of a mirror image.
+using MirrorSigns = std::array<double, 3>;
+/// Returns the mirror image of a material point of a shape that the coordinate planes mirror.
+Material<double> mirrored(const Material<double>& m, const MirrorSigns& signs);
+/// Returns whether each panel of the shape is within one octant.
+bool octant_panels(const RestShape& shape);
+
 std::vector<AngleNode> profile_nodes(const RestShape& shape, int n);  ///< along u
 std::vector<AngleNode> ring_nodes(const RestShape& shape, int n);     ///< along v
 /// Returns n nodes along w; for a shell the node w = 1.
 std::vector<QuadratureNode> depth_nodes(const RestShape& shape, int n);
-/// Appends the points of a ring. If shape.points_apart, there is one point for each node of v; else there are
-/// three points, or none if the ring has no mass. Throws std::invalid_argument if the rest shape folds over
-/// there.
+/// Returns the moments m, m x, m y, m x^2, m x y, m y^2 (columns) of the nodes (rows) of a ring, for
+/// density 1. x and y: coordinates in which the displacements of the ring are affine. Throws
+/// std::invalid_argument if the rest shape folds over there.
+Eigen::MatrixXd ring_moments(const RestShape& shape, const AngleNode& u, const QuadratureNode& w,
+                             const std::vector<AngleNode>& v);
+/// Appends the points of a ring. If shape.points_apart, there is one point for each node of v, or four points
+/// if shape.octant; else there are three points, or none if the ring has no mass. Throws
+/// std::invalid_argument if the rest shape folds over there.
 void add_ring(const RestShape& shape, const AngleNode& u, const QuadratureNode& w,
               const std::vector<AngleNode>& v, std::vector<RestPoint>& out);
 

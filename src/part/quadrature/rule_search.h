@@ -7,9 +7,10 @@
 //   kEach           number of integrands for each state
 //   kTolerance      relative change by doubling at which a rule has converged
 //   kRequired       relative change that is accepted if finer rules do not reduce it
-//   kThin           relative change that thinning may make
-//   n()             number of dynamic parameters
-//   shares(columns, n_states)  the contribution of each node (row) to each integral (column)
+//   thinning()      accuracy of thinning
+//   n_states()      number of states at which a rule is tested
+//   shares(columns, first, end)  the contribution of each node (row) to each integral (column) at the states
+//                   from number `first` to number end - 1
 #pragma once
 
 #include <algorithm>
@@ -52,6 +53,14 @@ class Draw {
 
  private:
   std::uint64_t seed_ = 0x9e3779b97f4a7c15u;
+};
+
+/// The accuracy of thinning.
+struct Thinning {
+  double tolerance;  ///< relative change of an integral that thinning may make
+  /// Smallest number of sampled integrands for each dimension of the space that they span. With few
+  /// integrands the sample does not span the space of all integrands.
+  int integrands_of_rank = 3;
 };
 
 /// The quadrature points of all nodes of one direction, at one place of the other directions.
@@ -119,11 +128,11 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
   struct Integrals {
     Eigen::VectorXd value, size;
   };
-  const int n_states = integrands.n() == 0 ? 8 : 48;
+  const int n_states = integrands.n_states();
   std::vector<Integrals> known;
   auto at = [&](int level) -> const Integrals& {
     while (static_cast<int>(known.size()) <= level) {
-      const Eigen::MatrixXd F = integrands.shares(columns(static_cast<int>(known.size())), n_states);
+      const Eigen::MatrixXd F = integrands.shares(columns(static_cast<int>(known.size())), 0, n_states);
       known.push_back({F.colwise().sum(), F.cwiseAbs().colwise().sum()});
     }
     return known[static_cast<std::size_t>(level)];
@@ -154,13 +163,18 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
 /// nodes. line: the points of the nodes.
 template <class Integrands, class Node>
 void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& nodes) {
+  const Thinning thinning = integrands.thinning();
   Eigen::VectorXd factors;
-  for (int n_states = 80;; n_states *= 2) {
+  Eigen::MatrixXd F(line.n_nodes, 0);
+  for (int known = 0, n_states = 80;; known = n_states, n_states *= 2) {
+    const Eigen::MatrixXd further = integrands.shares(line, known, n_states);
+    F.conservativeResize(Eigen::NoChange, F.cols() + further.cols());
+    F.rightCols(further.cols()) = further;
     Eigen::Index rank = 0;
-    factors = thin_rule(integrands.shares(line, n_states), &rank, Integrands::kThin);
+    factors = thin_rule(F, &rank, thinning.tolerance);
     // Stop when further states would add no new integrand, which means that the rank is far below the number
     // of integrands, or when no node can be removed.
-    if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
+    if (thinning.integrands_of_rank * rank <= F.cols() || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -194,9 +208,9 @@ inline void remove_massless(std::vector<RestPoint>& points) {
                points.end());
 }
 
-/// Maximum number of rings to thin together. The time of thinning grows with the cube of this number; with
-/// more rings, thinning takes longer than the time that most runs save.
-inline constexpr std::size_t kMaxThinned = 600;
+/// Maximum number of rings to thin together, and number of rings in a group of a larger set. The time of
+/// thinning grows with the cube of these numbers.
+inline constexpr std::size_t kMaxThinned = 600, kThinnedGroup = 200;
 
 /// A ring of material points.
 struct RingNode {
@@ -225,14 +239,15 @@ class RingSearch {
     search_v(placed);
     if (!shape_.part.shell()) search_w(placed);
     search_u(placed);
+    // A rule that is thinned may have no point in a fold. ring_moments() throws where the surface folds over.
+    for (const AngleNode& at : u_) ring_moments(shape_, at, {1, 0, 1}, whole_ring_);
     // Thinning all pairs (u, w) together leaves fewer rings than thinning along u and along w alone.
     std::vector<RingNode> rings;
     for (const AngleNode& at : u_)
       for (const QuadratureNode& depth : w_) rings.push_back({at, depth});
-    if (thinned_ && w_.size() > 1 && rings.size() <= kMaxThinned)
-      thin(integrands_, along_rings(rings), rings);
+    if (thinned_ && w_.size() > 1) thin_rings(rings);
 
-    const std::size_t n_points = rings.size() * (shape_.points_apart ? v_.size() : 3);
+    const std::size_t n_points = rings.size() * (shape_.points_apart ? v_.size() * shape_.images() : 3);
     if (n_points > kMaxPoints) throw_too_many_points(shape_.part, Integrands::subject);
     for (const RingNode& ring : rings) add_ring(shape_, ring, v_, placed.points);
     return placed;
@@ -240,12 +255,37 @@ class RingSearch {
 
  private:
   static constexpr int kCoarse = 5, kPlaces = 16;
+  static constexpr std::size_t kSmallRing = 64;  // nodes of a ring that is computed fast without thinning
+
+  /// Integrands of the moments of rings of a solid at random nodes of u and w. With a rule that is thinned
+  /// for them, the search along u and w computes few points of each ring. The moments of shells contain
+  /// roots, and span spaces of high dimension.
+  struct RingMoments {
+    static constexpr int kEach = 6;
+    const RingSearch& search;
+    static Thinning thinning() { return {1e-15}; }
+    Eigen::MatrixXd shares(const Columns& line, int first, int end) const {
+      Eigen::MatrixXd F(line.n_nodes, kEach * (end - first));
+      Draw draw;
+      for (int k = 0; k < end; ++k) {
+        const AngleNode& u = search.u_[draw.below(search.u_.size())];
+        const QuadratureNode& w = search.w_[draw.below(search.w_.size())];
+        if (k >= first)
+          F.middleCols<kEach>(kEach * (k - first)) = ring_moments(search.shape_, u, w, search.v_);
+      }
+      return F;
+    }
+  };
 
   void search_v(PlacedPoints& placed) {
     const int level =
         refine(integrands_, placed.remaining, [&](int l) { return along_v(ring_nodes(shape_, size_at(l))); });
     v_ = ring_nodes(shape_, size_at(level + extra_));
-    if (shape_.points_apart) thin(integrands_, along_v(v_), v_);
+    whole_ring_ = v_;
+    if (shape_.points_apart)
+      thin(integrands_, along_v(v_), v_);
+    else if (!shape_.part.shell() && v_.size() > kSmallRing)
+      thin(RingMoments{*this}, Columns{{}, static_cast<Eigen::Index>(v_.size())}, v_);
   }
   void search_w(PlacedPoints& placed) {
     const int level = refine(integrands_, placed.remaining,
@@ -260,6 +300,25 @@ class RingSearch {
     if (thinned_) thin(integrands_, along_u(u_), u_);
   }
 
+  /// Removes rings that the integrals do not need. Large sets are thinned in groups of neighbouring rings, as
+  /// long as this removes at least a quarter of the first group.
+  void thin_rings(std::vector<RingNode>& rings) const {
+    while (rings.size() > kMaxThinned) {
+      const std::size_t before = rings.size(), groups = (before + kThinnedGroup - 1) / kThinnedGroup;
+      std::vector<RingNode> kept;
+      for (std::size_t g = 0; g < groups; ++g) {
+        std::vector<RingNode> group(rings.begin() + static_cast<std::ptrdiff_t>(g * before / groups),
+                                    rings.begin() + static_cast<std::ptrdiff_t>((g + 1) * before / groups));
+        const std::size_t all = group.size();
+        thin(integrands_, along_rings(group), group);
+        if (g == 0 && 4 * group.size() > 3 * all) return;
+        kept.insert(kept.end(), group.begin(), group.end());
+      }
+      rings = std::move(kept);
+    }
+    thin(integrands_, along_rings(rings), rings);
+  }
+
   // The functions along_*() return the points of the nodes of one direction, at random places of the other
   // directions. If the points of a ring do not move independently, a column has whole rings.
 
@@ -270,7 +329,7 @@ class RingSearch {
       Column column;
       add_ring(shape_, u_[draw.below(u_.size())], w_[draw.below(w_.size())], nodes, column.points);
       for (std::size_t i = 0; i < column.points.size(); ++i)
-        column.node.push_back(shape_.points_apart ? static_cast<Eigen::Index>(i) : 0);
+        column.node.push_back(shape_.points_apart ? static_cast<Eigen::Index>(i / shape_.images()) : 0);
       line.columns.push_back(std::move(column));
     }
     line.n_nodes = shape_.points_apart ? static_cast<Eigen::Index>(nodes.size()) : 1;
@@ -327,6 +386,7 @@ class RingSearch {
   // The nodes found so far. Directions that have not been searched yet have coarse nodes.
   std::vector<AngleNode> u_ = profile_nodes(shape_, kCoarse), v_ = ring_nodes(shape_, kCoarse);
   std::vector<QuadratureNode> w_ = depth_nodes(shape_, kCoarse);
+  std::vector<AngleNode> whole_ring_;  // nodes along v before thinning
 };
 
 }  // namespace pliant::rule_search

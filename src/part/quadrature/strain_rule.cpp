@@ -97,8 +97,7 @@ class StrainIntegrands {
  public:
   static constexpr const char* subject = "strain energy";
   static constexpr int kEach = 4;
-  static constexpr double kTolerance = kStrainTolerance, kThin = 1e-2 * kStrainTolerance,
-                          kRequired = 1e2 * kStrainTolerance;
+  static constexpr double kTolerance = kStrainTolerance, kRequired = 1e2 * kStrainTolerance;
 
   StrainIntegrands(const RestShape& shape, const ContinuumLaw& law)
       : shape_(shape), law_(law), ranges_(shape.part) {
@@ -108,27 +107,29 @@ class StrainIntegrands {
       for (const QuadratureNode& w : depth_nodes(shape, coarse)) add_ring(shape, u, w, v, sample_);
     sample_points_ = with_directions(shape.part, shape.rest, sample_);
   }
-  int n() const { return ranges_.n(); }
+  int n_states() const { return ranges_.n() == 0 ? 8 : 48; }
+  static Thinning thinning() { return {1e-2 * kStrainTolerance}; }
 
-  Eigen::MatrixXd shares(const Columns& line, int n_states) const {
-    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(line.n_nodes, kEach * n_states);
+  Eigen::MatrixXd shares(const Columns& line, int first, int end) const {
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(line.n_nodes, kEach * (end - first));
     Draw draw;
     std::vector<StrainPoints> points;
     for (const Column& column : line.columns)
       points.push_back(with_directions(shape_.part, shape_.rest, column.points));
-    for (int number = 0; number < n_states; ++number) {
+    for (int number = 0; number < end; ++number) {
       State state;
       ranges_.draw(draw, number, state.q, state.first);
       confine(number, state.q);
       VecMax<double> unused;
       ranges_.draw(draw, number, unused, state.second);
+      if (number < first) continue;
       const Densities& unit = units(number, state);
       const std::size_t place = static_cast<std::size_t>(number) % line.columns.size();
       const Column& column = line.columns[place];
       for_each_point(points[place], column.points.size(), state,
                      [&](std::size_t k, const Densities& density) {
                        for (std::size_t c = 0; c < kEach; ++c)
-                         F(column.node[k], kEach * number + static_cast<int>(c)) +=
+                         F(column.node[k], kEach * (number - first) + static_cast<int>(c)) +=
                              column.points[k].mass * density[c] / unit[c];
                      });
     }
