@@ -52,10 +52,10 @@ class PowerPanel {
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
   /// Adds n nodes. The integrand consists of powers of t and of t^(2/eps). With t = x^q and q a multiple of
-  /// eps, the powers of t^(2/eps) are smooth in x; q >= 5 makes those of t smooth enough.
+  /// eps, the powers of t^(2/eps) are smooth in x; q >= 4 makes those of t smooth enough.
   void add(int n) {
     const double reach = std::exp2(-panel_.eps / 2);
-    for (const QuadratureNode& node : one_end_rule(n, panel_.eps * std::ceil(5 / panel_.eps)))
+    for (const QuadratureNode& node : one_end_rule(n, panel_.eps * std::ceil(4 / panel_.eps)))
       add(std::log(reach * node.x) / panel_.eps, reach * node.weight);
   }
 
