@@ -133,6 +133,9 @@ class ContactStepping {
   void extrapolate(StepContext& step, const State& whole, const Extrapolation& from, std::size_t second,
                    const std::vector<int>& parts);
   bool has_deep_nodes(const State& state);
+  bool copy_deep_nodes(double t, const State& full, const State& halves, State& coarse);
+  void keep_momenta(double t, const std::vector<Vec3<double>>& momenta, const std::vector<int>& parts,
+                    State& state);
   Extrapolation soft_extrapolation(double t, const State& start, const State& halves, const State& whole,
                                    const std::vector<int>& parts);
   /// Values at the start of a step that may be repeated.

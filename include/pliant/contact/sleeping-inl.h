@@ -199,7 +199,7 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
   }
 }
 
-/// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity is
+/// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity
 /// and the rates of parameters that are no lengths are multiplied by the size of the part. The largest rate
 /// of a local displacement is added.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {

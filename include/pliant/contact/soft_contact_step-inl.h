@@ -1,5 +1,6 @@
-// Steps of implicit methods in which parts that deform locally may touch something: both halves are repeated,
-// and extrapolated where that is possible. Function bodies of contact_stepping.h.
+// Steps of implicit methods in which parts that deform locally may touch something: the step is repeated as
+// two halves, and both results are extrapolated where that is possible. Function bodies of
+// contact_stepping.h.
 #pragma once
 
 #include <pliant/contact/contact_stepping.h>
@@ -17,10 +18,10 @@ namespace soft_contact {
 
 /// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation.
 inline constexpr double kMaxOverlap = 400;
-/// A step that begins with a deeper contact at nodes, in the same unit, separates bodies, and is not
-/// repeated. Resolutions leave 0.8 of it.
+/// A step that begins with a contact at nodes deeper than this, in the same unit, separates bodies, and is
+/// not repeated. It is more than ContactResolution leaves (contact_resolution::kMeshOverlap).
 inline constexpr double kMaxOverlapAtStart = 1000;
-/// Largest number of rounds that look for nodes that keep the motion of the halves.
+/// Largest number of rounds that look for nodes that keep the positions of the halves.
 inline constexpr int kMaxRounds = 3;
 
 /// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
@@ -48,8 +49,8 @@ inline bool differ(const Model& model, const State& a, const State& b, const std
   });
 }
 
-/// Copies the coordinates and velocities of the nodes of one side of a contact. If the part has modes in
-/// place of nodes, all its coordinates are copied.
+/// Copies the positions of the nodes of one side of a contact. If the part has modes in place of nodes, all
+/// its coordinates and velocities are copied.
 inline void copy_nodes(const Model& model, const ContactSide& side, const State& from, State& to) {
   if (side.part < 0 || !side.at_nodes()) return;
   const PartModel& m = model.parts()[at(side.part)];
@@ -59,7 +60,7 @@ inline void copy_nodes(const Model& model, const ContactSide& side, const State&
     to.v.segment(m.v0, m.n_v()) = from.v.segment(m.v0, m.n_v());
     return;
   }
-  const int n_nodes = m.n_d() / 3;
+  const auto n_nodes = static_cast<int>(m.local->mesh().X.rows());
   for (const int node : side.node)
     for (int axis = 0; node >= 0 && axis < 3; ++axis) {
       const int k = m.q0 + 7 + m.n_s + axis * n_nodes + node;
@@ -72,7 +73,7 @@ inline void copy_nodes(const Model& model, const ContactSide& side, const State&
 /// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). Such
 /// a step of linearly_implicit is one of linearly implicit Euler, which damps oscillations by a rate of half
 /// of omega^2 h. The extrapolation has second order, and damps by a rate of order h^3. Nodes that it
-/// would move into a body keep the motion of the halves. If rigid contacts or modes differ, the result is
+/// would move into a body keep the positions of the halves. If rigid contacts or modes differ, the result is
 /// that of the halves; if the halves fail, it is that of the whole step.
 PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, StepContext& step,
                                                           const Before& before, double length,
@@ -128,6 +129,22 @@ PLIANT_INLINE bool ContactStepping::has_deep_nodes(const State& state) {
   });
 }
 
+/// Looks for nodes that are deeper in a body than soft_contact::kMaxOverlap at the state `full` and the time
+/// t (s), and copies their positions from `halves` to `coarse`. Returns whether there are any.
+PLIANT_INLINE bool ContactStepping::copy_deep_nodes(double t, const State& full, const State& halves,
+                                                    State& coarse) {
+  std::vector<Contact> found;
+  meshes_.find(full, t, found);
+  bool any = false;
+  for (const Contact& contact : found) {
+    if (-contact.gap <= soft_contact::kMaxOverlap * resting_.tight_gap(contact)) continue;
+    any = true;
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      soft_contact::copy_nodes(dynamics_.model(), *side, halves, coarse);
+  }
+  return any;
+}
+
 /// Chooses what a step of soft contact is extrapolated from. A node that extrapolation would move into a body
 /// keeps the position of the halves: it met the body in one of both results only. The share is below 1 where
 /// extrapolation would add energy. start, halves, whole: states at the start of the step, and at its end
@@ -138,26 +155,16 @@ PLIANT_INLINE ContactStepping::Extrapolation ContactStepping::soft_extrapolation
   if (soft_contact::differ(model, halves, whole, parts)) return {whole, 0};
   Extrapolation result{whole, 1};
   State full = extrapolated(halves, result, parts);
-  bool deep = true;
-  for (int round = 0; deep && round < soft_contact::kMaxRounds; ++round) {
-    std::vector<Contact> found;
-    meshes_.find(full, t, found);
-    deep = false;
-    for (const Contact& contact : found)
-      if (-contact.gap > soft_contact::kMaxOverlap * resting_.tight_gap(contact)) {
-        deep = true;
-        for (const ContactSide* side : {&contact.a, &contact.b})
-          soft_contact::copy_nodes(model, *side, halves, result.coarse);
-      }
-    if (deep) full = extrapolated(halves, result, parts);
+  for (int round = 0; copy_deep_nodes(t, full, halves, result.coarse); ++round) {
+    if (round == soft_contact::kMaxRounds) return {whole, 0};
+    full = extrapolated(halves, result, parts);
   }
-  if (deep) return {whole, 0};
   auto energy_of = [&](const State& state) { return dynamics_.energy(t, state.q, state.v, parts, scratch_); };
   const double before = energy_of(start) - start.work.sum(),
                of_halves = energy_of(halves) - halves.work.sum() - before,
-               of_whole = energy_of(whole) - whole.work.sum() - before,
+               of_coarse = energy_of(result.coarse) - whole.work.sum() - before,
                balance = energy_of(full) - (2 * halves.work.sum() - whole.work.sum()) - before;
-  result.share = soft_contact::share_without_gain(of_halves, of_whole, balance);
+  result.share = soft_contact::share_without_gain(of_halves, of_coarse, balance);
   return result;
 }
 

@@ -68,6 +68,19 @@ inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts
   return gravity;
 }
 
+/// Returns the linear momenta, kg m/s, world, of those parts of a list that deform locally. work: the last
+/// evaluation of these parts.
+inline std::vector<Vec3<double>> local_momenta(const Model& model, const std::vector<int>& parts,
+                                               const Workspace<double>& work) {
+  std::vector<Vec3<double>> momenta;
+  for (const int i : parts) {
+    const PartModel& m = model.parts()[at(i)];
+    const PartWorkspace<double>& w = work.parts[at(i)];
+    if (m.local != nullptr) momenta.push_back(w.R * m.local->motion(w.v_r, *w.local).momentum);
+  }
+  return momenta;
+}
+
 /// Returns whether parts were at rest in a step: their states at its start (initial) and at its end (state)
 /// differ by at most kAtRestTolerance.
 inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts,
@@ -236,28 +249,46 @@ PLIANT_INLINE State ContactStepping::extrapolated(const State& halves, const Ext
   return state;
 }
 
+/// Changes c_dot of the parts that deform locally so that their linear momenta are `momenta`, as of
+/// local_momenta(). Momenta are extrapolated like velocities, but are not linear in the coordinates, and
+/// nodes that keep the positions of the halves change them. t: time of the state, s.
+PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec3<double>>& momenta,
+                                                 const std::vector<int>& parts, State& state) {
+  if (momenta.empty()) return;
+  const Model& model = dynamics_.model();
+  dynamics_.energy(t, state.q, state.v, parts, scratch_);
+  const std::vector<Vec3<double>> now = step_doubling::local_momenta(model, parts, scratch_);
+  std::size_t number = 0;
+  for (const int i : parts) {
+    const PartModel& m = model.parts()[at(i)];
+    if (m.local == nullptr) continue;
+    state.v.segment<3>(m.v0) += (momenta[number] - now[number]) / m.part->total_mass();
+    ++number;
+  }
+}
+
 /// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
 /// end of the whole step. from: what extrapolated() gets. second: number of the first contact of the second
 /// half in the record.
 PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole,
                                                 const Extrapolation& from, std::size_t second,
                                                 const std::vector<int>& parts) {
+  const Model& model = dynamics_.model();
   State& state = step.state;
   auto energy_of = [&](const State& at_end) {
     return dynamics_.energy(step.t, at_end.q, at_end.v, parts, scratch_);
   };
-  const double energy = (1 + from.share) * energy_of(state) - from.share * energy_of(whole);
+  const double of_whole = energy_of(whole);
+  const std::vector<Vec3<double>> momenta_of_whole = step_doubling::local_momenta(model, parts, scratch_);
+  const double energy = (1 + from.share) * energy_of(state) - from.share * of_whole;
+  std::vector<Vec3<double>> momenta = step_doubling::local_momenta(model, parts, scratch_);
+  for (std::size_t i = 0; i < momenta.size(); ++i)
+    momenta[i] += from.share * (momenta[i] - momenta_of_whole[i]);
   state = extrapolated(state, from, parts);
   state.work += from.share * (state.work - whole.work);
   const double work_before = state.work.sum();
-  // The linear momenta m c_dot are those of the extrapolation. Nodes that keep positions of the halves move
-  // the centre of mass, and with it, in a part that turns, the frame's velocity.
-  const VecX<double> extrapolated_v = state.v;
   project_frames(step, parts);
-  for (const int i : parts) {
-    const int v0 = dynamics_.model().parts()[at(i)].v0;
-    state.v.segment<3>(v0) = extrapolated_v.segment<3>(v0);
-  }
+  keep_momenta(step.t, momenta, parts, state);
   project_joints(step);
   project_limits(step);
   include_openings(second, step.t, step.h, state);

@@ -40,6 +40,8 @@ inline constexpr double kCoarse = 1e-6;
 /// Estimated time of a trial, microseconds, after which it ends, and the least cost of a trial, evaluations.
 /// Small models do not reach this time.
 inline constexpr double kTrialTime = 2e6, kMinCost = 30;
+/// Steps that every trial may take, whatever they cost.
+inline constexpr int kLeastSteps = 3;
 /// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
 
@@ -69,7 +71,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
   method.measure(&scale);
   const double most = max_cost(dynamics.model());
   int steps = 0;
-  auto too_long = [&] { return cost_of(counters, steps, factorisation) > most; };
+  auto too_long = [&] { return steps >= kLeastSteps && cost_of(counters, steps, factorisation) > most; };
   auto attempt = [&] {
     if (stop && stop()) throw ChoiceStopped();
     if (too_long()) return failed;

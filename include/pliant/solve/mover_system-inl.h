@@ -110,10 +110,15 @@ Eigen::Matrix<double, N, N> MoverSystem::inverse_of(const Mover& k) const {
   using Numbers = Eigen::Matrix<double, N, N>;
   Numbers A = Eigen::Map<const Numbers>(numbers_.data() + k.numbers, k.size, k.size);
   if constexpr (N == 3) return A.inverse();  // without pivots
-  Eigen::Matrix<double, N, 1> weight = weight_.segment<N>(k.row, k.size);
-  for (double& w : weight) w = power_of_two(w);
-  A = (weight.asDiagonal() * A * weight.cwiseInverse().asDiagonal()).eval();
-  return weight.cwiseInverse().asDiagonal() * Numbers(A.inverse()) * weight.asDiagonal();
+  const auto weight = weight_.segment<N>(k.row, k.size);
+  const auto scale = [&](Numbers& to, bool back) {
+    for (int j = 0; j < k.size; ++j)
+      for (int i = 0; i < k.size; ++i) to(i, j) *= back ? weight[j] / weight[i] : weight[i] / weight[j];
+  };
+  scale(A, false);
+  A = A.inverse().eval();
+  scale(A, true);
+  return A;
 }
 
 /// Eliminates mover k: x_k = (1 + A_kk)^-1 (b_k - sum of A_kj x_j over its remaining neighbours).

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <pliant/math/scalar/power_of_two.h>
 #include <pliant/math/types.h>
 
 namespace pliant {
@@ -37,7 +38,9 @@ class MoverSystem {
   };
   /// Raises the weight of a row: the factor that makes its velocity comparable with those of other rows. The
   /// elimination pivots on weighted rows. A row whose weight was never raised is no pivot of other columns.
-  void raise_weight(int row, double weight) { weight_[row] = std::max(weight_[row], weight); }
+  void raise_weight(int row, double weight) {
+    if (weight > 0) weight_[row] = std::max(weight_[row], power_of_two(weight));
+  }
   /// Returns the storage of the block A_ij. The movers i and j must be equal or coupled.
   Block block(int i, int j) const;
 
@@ -85,7 +88,7 @@ class MoverSystem {
   std::vector<std::size_t> targets_;  // for each mover: storage of the blocks of its pairs of neighbours
   VecX<double> numbers_;              // the entries of 1 + A, in the order of elimination
   VecX<double> b_;
-  VecX<double> weight_;  // of each row
+  VecX<double> weight_;  // of each row: a power of two
 };
 
 }  // namespace pliant

@@ -303,10 +303,6 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
   core_.compute(core_scale_.asDiagonal() * core * core_scale_.asDiagonal());
 }
 
-PLIANT_INLINE MatX<double> ImplicitNodes::solve_core(const MatX<double>& b) const {
-  return core_scale_.asDiagonal() * core_.solve(MatX<double>(core_scale_.asDiagonal() * b));
-}
-
 PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& nodal) const {
   const auto n_p = 3 * static_cast<Eigen::Index>(part_->joint_points.size());
   MatX<double> values(n_p, nodal.cols());

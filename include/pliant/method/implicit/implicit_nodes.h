@@ -65,7 +65,11 @@ class ImplicitNodes final : public ImplicitPart {
   /// Computes and factors the Schur complement of S.
   void make_core(const LocalWorkspace& w);
   /// Returns the Schur complement's inverse times b.
-  MatX<double> solve_core(const MatX<double>& b) const;
+  template <class B>
+  typename B::PlainObject solve_core(const Eigen::MatrixBase<B>& b) const {
+    const typename B::PlainObject scaled = core_scale_.asDiagonal() * b;
+    return core_scale_.asDiagonal() * core_.solve(scaled);
+  }
   /// Returns the values of fields at the attachment points of joints, three rows a point. nodal: one field
   /// over the local coordinates in each column.
   MatX<double> at_joints(const MatX<double>& nodal) const;
