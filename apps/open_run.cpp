@@ -4,6 +4,7 @@
 
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/frame_schedule.h>
+#include <pliant/io/layout.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/run/run_folder.h>
 #include <pliant/scene/read_scene.h>
@@ -11,6 +12,16 @@
 #include "scene_options.h"
 
 namespace pliant_cli {
+
+namespace {
+
+// Returns the command that continues a run.
+std::string resume_command(const pliant::RunRecord& record, const std::filesystem::path& folder) {
+  return "pliant run " + (record.scene_file.empty() ? "SCENE" : record.scene_file) + " -o " +
+         folder.string() + " --resume";
+}
+
+}  // namespace
 
 OpenRun open_run(const std::filesystem::path& folder) {
   OpenRun run;
@@ -30,12 +41,13 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.scene->width = run.record.width;
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
+  pliant::compare_layout(folder, *run.model);  // after a mismatch of version or scene, no run can continue
   try {
     run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
   } catch (const pliant::RecordingMismatch& fault) {
     if (run.record.status != pliant::RunRecord::Status::running) throw;
-    throw pliant::RecordingMismatch(std::string(fault.what()) +
-                                    "; the run did not end, and pliant run --resume continues it, if it can");
+    throw pliant::RecordingMismatch(std::string(fault.what()) + "; the run did not end; continue with: " +
+                                    resume_command(run.record, folder));
   }
   // A run that was killed may have lost states that were not yet on the disk. A run that has ended cannot
   // have lost states.
@@ -43,7 +55,8 @@ OpenRun open_run(const std::filesystem::path& folder) {
     throw pliant::RecordingMismatch(
         "the recording in " + folder.string() + " is damaged: its tables contain " +
         pliant::count_text(run.recording->rows(), "whole state") + ", but the run recorded " +
-        std::to_string(run.record.states) + "; pliant run --resume simulates the missing ones again");
+        std::to_string(run.record.states) +
+        "; simulate the missing ones again with: " + resume_command(run.record, folder));
   if (run.recording->rows() == 0)
     throw pliant::RecordingMismatch("the recording in " + folder.string() + " has no state; simulate again");
   return run;

@@ -4,11 +4,14 @@
 #include <iostream>
 #include <memory>
 
+#include <pliant/io/checksums.h>
 #include <pliant/io/format/number_text.h>
+#include <pliant/io/recording.h>
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/scheduled_step.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/io/state_row.h>
+#include <pliant/io/work_row.h>
 #include <pliant/scene/read_scene.h>
 #include <pliant/simulate/stable_step.h>
 
@@ -56,6 +59,12 @@ std::string obstacle_text(const pliant::MultiBody& body) {
          pliant::count_text(triangles, "triangle");
 }
 
+// Returns how many numbers are recorded for a state, in all tables with one row per state.
+std::size_t numbers_per_state(const pliant::Model& model, bool in_clusters) {
+  return 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) + pliant::mode_count(model, in_clusters) +
+         pliant::work_columns().size() + pliant::checksum_columns(pliant::checked_tables(model)).size();
+}
+
 void print_estimate(pliant::Scene& scene) {
   const pliant::FrameSchedule schedule = pliant::schedule_of(scene);
   pliant::Simulation simulation(scene.body, scene.integrator, 1, scene.tolerance);
@@ -75,8 +84,7 @@ void print_estimate(pliant::Scene& scene) {
     std::cout << ", about " << pliant::rounded_text(seconds_of_run(simulation, schedule), 2)
               << " s of computation";
   const pliant::Model& model = simulation.model();
-  const std::size_t numbers = 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) +
-                              pliant::mode_count(model, simulation.clusters() != nullptr);
+  const std::size_t numbers = numbers_per_state(model, simulation.clusters() != nullptr);
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
             << (model.body().contact.active ? "at least " : "")
             << pliant::rounded_text(

@@ -289,8 +289,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "steps with resting contacts are halved in both cases");
   CLI::Option* strict = command->add_flag("--strict", options->strict,
                                           "End with exit code 6 if the error of the energy balance exceeds 1 "
-                                          "% of the energy that could move [with "
-                                          "a tolerance, or a method of order 2 or higher]");
+                                          "% of the energy that could move (the default with "
+                                          "a tolerance or a method of order 2 or higher)");
   command->add_flag("--no-strict", options->not_strict, "End with exit code 0 in this case")
       ->excludes(strict);
   command->add_flag("--quiet", options->quiet, "Show no progress, notes or summary");

@@ -237,7 +237,10 @@ void compare_columns(const nlohmann::json& layout, const char* table, int count,
     for (const nlohmann::json& owner : layout.at(group.at("each").get_ref<const std::string&>()))
       visit_columns(layout.at("kinds").at(owner.at(1).get<std::size_t>()).at(set),
                     owner.at(0).get_ref<const std::string&>(), [&](const std::string& name) {
-                      if (columns < count && name != expected(columns))
+                      if (columns == count)
+                        throw RecordingMismatch(before + table + " has more than the " +
+                                                std::to_string(count) + " columns of this scene");
+                      if (name != expected(columns))
                         throw RecordingMismatch(before + "column " + std::to_string(columns) + " of " +
                                                 table + " is " + name + ", and in this scene " +
                                                 expected(columns));

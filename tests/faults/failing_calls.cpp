@@ -49,43 +49,62 @@ std::vector<int> errors_of(long what) {
   }
 }
 
+/// A call on a file of a run that fails.
+struct Fault {
+  long call = 0;
+  int error = 0;
+  std::string file;  ///< the name of the file
+};
+
+/// Returns what is wrong with the end of a run that could not lock a file; empty if all is right. Only the
+/// lock of the folder is necessary.
+std::string wrong_without_lock(const std::string& file, int code, const std::string& output) {
+  if (file == "pliant.lock")
+    return code == 7 && has(output, "does not lock files") ? "" : "the lock is not named: " + output;
+  return code == 0 && has(file, ".part-") ? "" : "code " + std::to_string(code) + ": " + output;
+}
+
 /// Lets one call of a run fail, and resumes the run. Returns what is wrong; empty if all is right.
-std::string fail_and_resume(const FaultyRun& place, long call, int error,
+std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
                             const std::map<std::string, std::string>& unbroken) {
   fs::remove_all(place / "broken");
+  const int error = fault.error;
   const Ended ended = place.traced("broken", "", [&](const Call& now) {
-    return Action{false, now.number == call ? error : 0};
+    return Action{false, now.number == fault.call ? error : 0};
   });
   const std::string told = place.output();
   if (error == EINTR && ended.code != 0) return "not repeated: " + told;
   if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
   if (ended.code == 7 && !has(told, "pliant: error: ")) return "no message: " + told;
-  const bool locks = error == ENOLCK || error == EOPNOTSUPP;  // only the lock of the folder is necessary
-  if (locks && ended.code == 7 && !has(told, "does not lock files")) return "the lock is not named: " + told;
+  if (error == ENOLCK || error == EOPNOTSUPP) {
+    const std::string wrong = wrong_without_lock(fault.file, ended.code, told);
+    if (!wrong.empty()) return wrong;
+  }
   return place.wrong_after_resume("broken", unbroken);
 }
 
 /// Lets one call fail while the killed run is resumed, and resumes it again. Returns what is wrong.
-std::string fail_while_resumed(const FaultyRun& place, long call, int error,
+std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
                                const std::map<std::string, std::string>& unbroken) {
   place.copy("killed", "broken");
   const Ended ended = place.traced("broken", "--resume", [&](const Call& now) {
-    return Action{false, now.number == call ? error : 0};
+    return Action{false, now.number == fault.call ? fault.error : 0};
   });
   const std::string told = place.output();
-  if (error == EINTR && ended.code != 0) return "not repeated: " + told;
+  if (fault.error == EINTR && ended.code != 0) return "not repeated: " + told;
   if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
   return place.wrong_after_resume("broken", unbroken);
 }
 
 /// Returns calls on files of a run, each with an error that it can report.
-std::vector<std::pair<long, int>> possible_faults(const FaultyRun& place, const std::string& more) {
-  std::vector<std::pair<long, int>> faults;
+std::vector<Fault> possible_faults(const FaultyRun& place, const std::string& more) {
+  std::vector<Fault> faults;
   place.traced(
       "broken", more,
       [&](const Call& call) {
         if (has(call.path, "broken"))
-          for (const int error : errors_of(call.what)) faults.emplace_back(call.number, error);
+          for (const int error : errors_of(call.what))
+            faults.push_back({call.number, error, fs::path(call.path).filename().string()});
         return Action{};
       },
       true);
@@ -98,12 +117,12 @@ void check_failures(const std::string& options, const std::string& outputs, std:
   const FaultyRun place(options, outputs);
   REQUIRE(place.run("unbroken") == 0);
   const auto unbroken = place.files("unbroken");
-  const std::vector<std::pair<long, int>> faults = possible_faults(place, "");
+  const std::vector<Fault> faults = possible_faults(place, "");
   REQUIRE(faults.size() > 100);
   const std::size_t stride = std::max<std::size_t>(1, faults.size() / count);
   for (std::size_t i = 0; i < faults.size(); i += stride) {
-    INFO("call " << faults[i].first << " failed with error " << faults[i].second);
-    CHECK(fail_and_resume(place, faults[i].first, faults[i].second, unbroken) == "");
+    INFO("call " << faults[i].call << " on " << faults[i].file << " failed with error " << faults[i].error);
+    CHECK(fail_and_resume(place, faults[i], unbroken) == "");
   }
 }
 
@@ -122,8 +141,8 @@ TEST_CASE(
   const auto old_files = place.files("old"), new_files = place.files("new");
   place.copy("old", "broken");
   std::vector<long> full;  // calls that fail with ENOSPC
-  for (const auto& [call, error] : possible_faults(place, replace))
-    if (error == ENOSPC) full.push_back(call);
+  for (const Fault& fault : possible_faults(place, replace))
+    if (fault.error == ENOSPC) full.push_back(fault.call);
   REQUIRE(full.size() > 40);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < full.size(); i += full.size() / 40) {
@@ -158,11 +177,11 @@ TEST_CASE("I51: a call on a file may fail while a run is resumed, and the run ca
   place.traced("killed", "", [&](const Call& now) { return Action{now.number == calls * 3 / 4, 0}; });
   REQUIRE(fs::exists(place / "killed/checkpoint_2.npy"));
   place.copy("killed", "broken");
-  const std::vector<std::pair<long, int>> faults = possible_faults(place, "--resume");
+  const std::vector<Fault> faults = possible_faults(place, "--resume");
   REQUIRE(faults.size() > 60);
   for (std::size_t i = 0; i < faults.size(); i += faults.size() / 40) {
-    INFO("call " << faults[i].first << " failed with error " << faults[i].second);
-    CHECK(fail_while_resumed(place, faults[i].first, faults[i].second, unbroken) == "");
+    INFO("call " << faults[i].call << " on " << faults[i].file << " failed with error " << faults[i].error);
+    CHECK(fail_while_resumed(place, faults[i], unbroken) == "");
   }
 }
 TEST_CASE("I51: a parent folder that cannot be read does not prevent a run") {

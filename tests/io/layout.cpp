@@ -143,4 +143,39 @@ TEST_CASE("I55: a layout of another version or of another scene is refused") {
                     test::has_text("q.npy has 23 columns, and this scene needs 30"));
 }
 
+TEST_CASE("I55: a damaged layout with too many columns is refused at once") {
+  const NewFolder folder;
+  const auto scene = spheres(1);
+  const Model model(scene->body);
+  write_layout(folder.path, model, FrameSchedule(1, 0.1, 10), {});
+  nlohmann::json layout = nlohmann::json::parse(bytes_of(folder / kLayoutFile));
+  nlohmann::json& columns = layout.at("kinds").at(0).at("coordinates");
+  columns.push_back({{"name", "*.d#"}, {"count", 2000000000}});
+  set_bytes(folder / kLayoutFile, layout.dump());
+  CHECK_THROWS_WITH(compare_layout(folder.path, model),
+                    test::has_text("q.npy has more than the " + std::to_string(model.n_q()) + " columns"));
+}
+
+TEST_CASE("I55: run.json of another version is refused, with the version and what to do") {
+  const NewFolder folder;
+  const std::filesystem::path file = folder / kRunFile;
+  write_run_record(file, RunRecord());
+  CHECK_NOTHROW(read_run_record(file));
+  nlohmann::ordered_json old = nlohmann::ordered_json::parse(bytes_of(file));
+  old["version"] = 4;
+  set_bytes(file, old.dump(2));
+  CHECK_THROWS_WITH(read_run_record(file),
+                    test::has_text("run.json is damaged: its checksum does not match"));
+  old.erase("check");
+  set_bytes(file, old.dump(2));
+  CHECK_THROWS_WITH(read_run_record(file),
+                    test::has_text("has version 4, and this program reads version 5 only"));
+  old.erase("version");
+  old.at("progress").erase("durable_states");
+  set_bytes(file, old.dump(2));
+  CHECK_THROWS_WITH(read_run_record(file),
+                    test::has_text("has no version, and this program reads version 5 only. Read the run with "
+                                   "the program that wrote it"));
+}
+
 }  // namespace layout_test

@@ -41,7 +41,7 @@ std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int s
   for (int i = 0; i <= steps; ++i) {
     if (i > 0) simulation.step(scene.step);
     if (i % stride != 0) continue;
-    writer.append(simulation.state());
+    writer.append(simulation.state(), RunWork());
     states.push_back(simulation.state());
   }
   writer.flush();
@@ -124,7 +124,7 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
   const auto rows = static_cast<std::int64_t>(states.size() - 1);
   CHECK(Recording(folder.path, model).rows() == rows);
   RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
-  writer.append(states.back());
+  writer.append(states.back(), RunWork());
   writer.flush();
   CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
@@ -171,7 +171,7 @@ TEST_CASE("I53: after a kill the shortest table determines the number of states"
     CHECK(bit_equal(recording.state(rows - 1), states[static_cast<std::size_t>(rows - 1)]));
   }
   RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
-  writer.append(states[static_cast<std::size_t>(rows)]);
+  writer.append(states[static_cast<std::size_t>(rows)], RunWork());
   writer.flush();
   CHECK(bit_equal(Recording(folder.path, model).state(rows), states[static_cast<std::size_t>(rows)]));
 }
@@ -256,7 +256,8 @@ TEST_CASE("with error control, pictures between two steps are as accurate as the
     {
       write_layout(folder.path, simulation.model(), FrameSchedule::with_free_steps(2, 50), {});
       RecordingWriter writer = RecordingWriter::create(folder.path, simulation.model());
-      for (writer.append(simulation.state()); simulation.time() < 2; writer.append(simulation.state()))
+      for (writer.append(simulation.state(), RunWork()); simulation.time() < 2;
+           writer.append(simulation.state(), RunWork()))
         simulation.step_up_to(2);
       writer.flush();
     }
@@ -305,7 +306,8 @@ TEST_CASE("pictures between long steps show resting parts at rest, and a rolling
   {
     write_layout(folder.path, simulation.model(), FrameSchedule::with_free_steps(1, 50), {});
     RecordingWriter writer = RecordingWriter::create(folder.path, simulation.model());
-    for (writer.append(simulation.state()); simulation.time() < 1; writer.append(simulation.state()))
+    for (writer.append(simulation.state(), RunWork()); simulation.time() < 1;
+         writer.append(simulation.state(), RunWork()))
       simulation.step_up_to(1);
     writer.flush();
   }

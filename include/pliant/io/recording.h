@@ -40,7 +40,7 @@ class RecordingWriter {
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
   /// Appends a state and the work up to it, which stay in memory until flush().
-  void append(const State& state, const RunWork& work = {});
+  void append(const State& state, const RunWork& work);
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.
   void flush(bool to_disk = false);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include <pliant/body/step_failure.h>
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/format/ply.h>
 #include <pliant/io/format/whole_file.h>
@@ -30,7 +31,7 @@ void require_same(const char* name, const Value& recorded, const Value& now, con
 
 /// Returns the counts of the first evaluation with a new workspace, at the state of a simulation, that a
 /// later evaluation there does not repeat. A resumed run counts them twice: at its start, and when it is
-/// resumed.
+/// resumed. Returns no counts if the evaluation fails: the next step then reports the failure.
 Counters first_evaluation(const Simulation& simulation) {
   Workspace<double> work;
   auto evaluated = [&] {
@@ -41,8 +42,12 @@ Counters first_evaluation(const Simulation& simulation) {
     for (const RigidWorkspace& island : work.rigid) sum.parts += island.counters;
     return sum;
   };
-  const RunWork once = evaluated(), twice = evaluated();
-  return continued({}, once, continued({}, twice, once)).parts;
+  try {
+    const RunWork once = evaluated(), twice = evaluated();
+    return continued({}, once, continued({}, twice, once)).parts;
+  } catch (const StepFailure&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -221,9 +226,11 @@ Run::Continuation Run::find_continuation(const Recording& recorded) {
 }
 
 /// Includes the first `states` recorded states in the run record, as the session that recorded them did. The
-/// notes of this session that were written to run.json are not repeated.
+/// notes of this session that were written to run.json are not repeated. Throws Interrupted if `stop` of the
+/// options returns true; the run can then be resumed again.
 void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
   record_.max_gap = record_.max_depth = record_.max_energy = 0;
+  progress_->begin("read", static_cast<double>(states), "states");
   for (std::int64_t row = 0; row < states; ++row) {
     simulation_->set_state(recorded.state(row));
     last_recorded_ = simulation_->state();
@@ -231,7 +238,11 @@ void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
     const Ledger ledger = simulation_->ledger();
     energies_->add(ledger, recorded_time_);
     observe_state(ledger);
+    progress_->advance(static_cast<double>(row + 1));
+    if (options_.stop && options_.stop())
+      throw Interrupted("stopped while the recorded states were read; continue with --resume");
   }
+  progress_->end();
 }
 
 void Run::resume_recording(const StableStep& stable) {

@@ -27,6 +27,9 @@ constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
 /// The search for a remedy takes at most this multiple of the wall time of the failed run. It takes at least
 /// RunOptions::remedy_seconds, and at most kMaxRemedyShare times that.
 constexpr double kRemedyShare = 3, kMaxRemedyShare = 10;
+/// Words of the notes on steps without error control and on open joints, by which they are found again.
+constexpr const char* kUncontrolledText = "resting contacts of many bodies, or of soft ones, in ";
+constexpr const char* kOpenJointsText = " still open: ";
 
 // Returns the simulation of a scene. Throws std::invalid_argument for inconsistent settings of the scene.
 std::unique_ptr<Simulation> prepare(Scene& scene, const RunOptions& options) {
@@ -199,7 +202,7 @@ void Run::note_ground() {
 }
 
 /// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
-/// write_record() must have updated the counters.
+/// update_record() must have updated the counters.
 void Run::note_violations() {
   replace_notes(is_violation_note, violation_notes(record_.work.steps, scene_->body.contact));
 }
@@ -208,6 +211,25 @@ void Run::note_violations() {
 void Run::note_energy_balance() {
   const std::string text = energy_note(*simulation_, *energies_);
   replace_notes(is_energy_note, text.empty() ? std::vector<std::string>() : std::vector<std::string>{text});
+}
+
+/// Adds a note on the steps whose error is not controlled. It replaces that of earlier sessions.
+/// update_record() must have updated the counters.
+void Run::note_uncontrolled_steps() {
+  std::vector<std::string> notes;
+  if (record_.work.steps.uncontrolled > 0)
+    notes.push_back(kUncontrolledText + count_text(record_.work.steps.uncontrolled, "step") +
+                    ": the error of these steps is not controlled; they are at most " +
+                    rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
+                    " s long, and --estimate-error measures their error");
+  replace_notes([](const std::string& note) { return note.rfind(kUncontrolledText, 0) == 0; }, notes);
+}
+
+/// Adds a note on the joints that are open at the end. It replaces that of earlier sessions.
+void Run::note_open_joints() {
+  const std::string text = open_joints_note(*simulation_);
+  replace_notes([](const std::string& note) { return note.find(kOpenJointsText) != std::string::npos; },
+                text.empty() ? std::vector<std::string>() : std::vector<std::string>{text});
 }
 
 /// Replaces the notes for which is_old() is true by others.
@@ -281,7 +303,8 @@ void Run::observe_state(const Ledger& ledger) {
 }
 
 /// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
-/// Notes are written before the states that they are about: a resumed run does not find them again.
+/// Notes are written before the states that they are about, because notes on engaging joints cannot be found
+/// again from states.
 void Run::flush(bool to_disk) {
   if (record_.notes.size() != written_notes_) write_record();
   if (contacts_) contacts_->flush(to_disk);
@@ -419,16 +442,10 @@ bool Run::simulate() {
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
     if (!stopped_) remove_checkpoints(folder_->path());
-    if (record_.work.steps.uncontrolled > 0)
-      note("resting contacts of many bodies, or of soft ones, in " +
-           count_text(record_.work.steps.uncontrolled, "step") +
-           ": the error of these steps is not controlled; they are at most " +
-           rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
-           " s long, and --estimate-error measures their error");
+    note_uncontrolled_steps();
     note_violations();
     note_energy_balance();
-    const std::string open = open_joints_note(*simulation_);
-    if (!open.empty()) note(open);
+    note_open_joints();
     write("trajectory", {}, [&] { write_tables(); });
   } catch (const std::exception& failure) {
     fail(failure.what());

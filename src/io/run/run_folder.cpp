@@ -80,20 +80,23 @@ fs::path begun_run_file(const fs::path& folder) {
   return {};
 }
 
-/// Creates a folder with the name of an unfinished one, "NAME.part-PID-N", and returns its path.
-fs::path create_unfinished(const fs::path& name) {
-  for (int attempt = 0;; ++attempt) {
+/// Creates a folder with the name of an unfinished one, "NAME.part-PID-N", and returns its path. first: the
+/// smallest N.
+fs::path create_unfinished(const fs::path& name, int first = 0) {
+  for (int number = first;; ++number) {
     const fs::path path =
-        name.string() + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
+        name.string() + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(number);
     if (fs::create_directory(path)) return path;
   }
 }
 
-/// Locks a file for as long as the object exists, if no other process has locked it.
+/// Locks a file for as long as the object exists, if no other process has locked it. more_flags: of open(),
+/// for example O_CREAT.
 class TriedLock {
  public:
-  explicit TriedLock(const fs::path& file)
-      : descriptor_(retry([&] { return ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC); })),
+  explicit TriedLock(const fs::path& file, int more_flags = 0)
+      : descriptor_(
+            retry([&] { return ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC | more_flags, 0666); })),
         locked_(descriptor_ >= 0 && retry([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); }) == 0) {}
   ~TriedLock() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -108,20 +111,24 @@ class TriedLock {
   bool locked_;
 };
 
+/// Returns whether a folder contains only files that remain if a run is killed before it has begun.
+bool has_only_leftovers(const fs::path& folder) {
+  const fs::directory_iterator first = entries_of(folder), end;
+  return std::all_of(first, end,
+                     [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); });
+}
+
 /// Removes the folder of a new run that was killed before it began. The lock of the folder decides whether
-/// its run is alive, because a process number says little: the process may be on another machine, or the
-/// number may be that of a later process.
+/// its run is alive, because process numbers are used again, and the process may be on another machine. If
+/// there is no lock file, it is created: another process was killed while it removed the folder.
 void remove_if_abandoned(const fs::path& folder) {
   if (fs::is_empty(folder)) {  // its process was killed before the lock was made, or makes it now
     ::rmdir(folder.c_str());
     return;
   }
-  const TriedLock lock(folder / kLockFile);
-  if (!lock.locked()) return;
-  const fs::directory_iterator first = entries_of(folder), end;
-  if (std::all_of(first, end,
-                  [](const fs::directory_entry& inner) { return is_leftover(inner.path().filename()); }))
-    fs::remove_all(folder);
+  if (!has_only_leftovers(folder)) return;
+  const TriedLock lock(folder / kLockFile, O_CREAT);
+  if (lock.locked() && has_only_leftovers(folder)) fs::remove_all(folder);
 }
 
 /// Removes the folders "NAME.part-PID-N" of new runs that were killed. folder: path of NAME. A folder that
@@ -243,16 +250,17 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene,
 fs::path RunFolder::create_locked(const fs::path& folder) {
   constexpr int kAttempts = 10;
   for (int attempt = 1;; ++attempt) {
-    const fs::path unfinished = create_unfinished(folder);
+    const fs::path unfinished = create_unfinished(folder, attempt - 1);
     try {
       lock_ = std::make_unique<Lock>(unfinished);
       return unfinished;
-    } catch (const std::exception&) {
-      // Before the lock is made, another run may take the folder for an abandoned one and remove it.
+    } catch (const std::exception& fault) {
+      // Before the lock is made, another run may take the folder for an abandoned one, lock it and remove it.
+      const bool locked = dynamic_cast<const OutputRefused*>(&fault) != nullptr;
       const bool removed = !exists_at_all(unfinished);
       std::error_code ignored;
       fs::remove_all(unfinished, ignored);
-      if (!removed || attempt == kAttempts) throw;
+      if (!(locked || removed) || attempt == kAttempts) throw;
     }
   }
 }

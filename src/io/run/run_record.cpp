@@ -18,6 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kFormat = "pliant run";
 constexpr std::array<const char*, 4> kStatus{"running", "complete", "stopped", "failed"};
 
 // Returns a bound as JSON; an infinite bound becomes null, because JSON has no infinity.
@@ -160,7 +161,8 @@ Json error_estimate_of(const ErrorEstimate& e) {
 
 void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   Json json;
-  json["format"] = "pliant run";
+  json["format"] = kFormat;
+  json["version"] = kRecordingVersion;
   json["status"] = kStatus[static_cast<std::size_t>(r.status)];
   json["message"] = r.message;
   json["progress"] = {{"time", r.time},
@@ -257,6 +259,22 @@ void read_checksums(const Json& checksums, RunRecord& r) {
                    static_cast<std::uint32_t>(std::stoul(checksum.template get<std::string>(), nullptr, 16)));
 }
 
+/// Throws RecordingMismatch unless a run record is undamaged, and its run has the version that this program
+/// reads. Records of older versions may have no checksum and no version.
+void require_readable(const Json& json, const std::filesystem::path& file) {
+  if (json.at("format") != kFormat) throw RecordingMismatch(file.string() + " is not the record of a run");
+  if (json.contains("check") && json.at("check") != check_of(json))
+    throw RecordingMismatch(file.string() + " is damaged: its checksum does not match");
+  const bool has_version = json.contains("version");
+  if (!has_version || json.at("version") != kRecordingVersion)
+    throw RecordingMismatch(
+        file.string() + (has_version ? " has version " + json.at("version").dump() : " has no version") +
+        ", and this program reads version " + std::to_string(kRecordingVersion) +
+        " only. Read the run with the program that wrote it (\"build\" in the file), or simulate again with "
+        "--force");
+  json.at("check");  // throws if there is none
+}
+
 }  // namespace
 
 RunRecord read_run_record(const std::filesystem::path& file) {
@@ -270,6 +288,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
   }
   try {
     const Json json = Json::parse(text);
+    require_readable(json, file);
     RunRecord r;
     const std::string status = json.at("status");
     const auto found = std::find(kStatus.begin(), kStatus.end(), status);
@@ -288,8 +307,6 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     json.at("notes").get_to(r.notes);
     json.at("files").get_to(r.files);
     read_checksums(json.at("checksums"), r);
-    if (json.at("check") != check_of(json))
-      throw RecordingMismatch(file.string() + " is damaged: its checksum does not match");
     return r;
   } catch (const nlohmann::json::exception& fault) {
     throw RecordingMismatch(file.string() + " is damaged: " + without_tag(fault.what()));

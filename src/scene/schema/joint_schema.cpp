@@ -62,7 +62,8 @@ Record stabilization_record() {
                     "r = exp(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): stable for "
                     "all steps h"}}),
            "Rule for alpha and beta.", "\"automatic\""),
-       optional("rate", number(above(0), "1/s"), "Decay rate of a gap.", "10"),
+       optional("rate", number(above(0), "1/s"),
+                "Decay rate of a gap. A tenth of it is the unit of rates in tolerances.", "10"),
        optional("stab_alpha", number(at_least(0), "1/s"), "alpha of the rule \"free\".", "0"),
        optional("stab_beta", number(at_least(0), "1/s"),
                 "beta of the rule \"free\", which needs a value above 0; otherwise no gap closes.", "0"),

@@ -38,7 +38,7 @@ struct RunOptions {
   /// Wall time between two checkpoints, s; with 0, a checkpoint is written after every step.
   double checkpoint_every = kStandardCheckpointInterval;
   /// Called before every step; true ends the run so that it can be resumed. Also called while the method of
-  /// integration is chosen; true then ends the constructor of Run.
+  /// integration is chosen and while a resumed run reads its states; true then ends the constructor of Run.
   std::function<bool()> stop;
 };
 
@@ -51,7 +51,8 @@ class Run {
   /// begun in the folder of a resumed run, a new run begins. Throws std::invalid_argument (a bad scene),
   /// OutputRefused, RecordingMismatch (resuming with another scene, build, step, tolerance, method or frame
   /// rate, or a damaged recording), std::system_error, ChoiceStopped (`stop` returned true; no file has been
-  /// written). The scene must outlive the run.
+  /// written), Interrupted (`stop` returned true while recorded states were read). The scene must outlive the
+  /// run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
@@ -121,9 +122,9 @@ class Run {
   void set_final_values();
   void write_record();
   void fail(const std::string& message) noexcept;
-  /// Shows a note. Adds the note to run.json, unless it is there already.
+  /// Shows a note always; run.json has it once.
   void note(const std::string& text);
-  /// Shows a note and adds it to run.json, unless it is there already.
+  /// Does nothing if run.json has the note; otherwise as note().
   void note_once(const std::string& text);
   void note_redundancy();
   void note_engagements();
@@ -131,6 +132,8 @@ class Run {
   void note_ground();
   void note_violations();
   void note_energy_balance();
+  void note_uncontrolled_steps();
+  void note_open_joints();
   void replace_notes(bool (*is_old)(const std::string&), const std::vector<std::string>& notes);
 
   Scene* scene_;
