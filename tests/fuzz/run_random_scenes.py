@@ -41,7 +41,11 @@ def run(program, scene_file, folder, seconds, *options):
         text, _ = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGINT)
-        text, _ = process.communicate(timeout=60)
+        try:
+            text, _ = process.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return -signal.SIGKILL, "the program did not stop after an interrupt"
         if process.returncode == -signal.SIGINT:  # the scene was still being read
             return INTERRUPTED, text
     return process.returncode, text
