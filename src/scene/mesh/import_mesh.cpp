@@ -158,7 +158,7 @@ std::vector<Number> take(const std::string& bytes, std::size_t& at) {
   at += sizeof count;
   if ((bytes.size() - at) / sizeof(Number) < count) throw incomplete();
   std::vector<Number> numbers(static_cast<std::size_t>(count));
-  std::memcpy(numbers.data(), bytes.data() + at, numbers.size() * sizeof(Number));
+  std::copy_n(bytes.data() + at, numbers.size() * sizeof(Number), reinterpret_cast<char*>(numbers.data()));
   at += numbers.size() * sizeof(Number);
   return numbers;
 }
