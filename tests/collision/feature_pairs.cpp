@@ -132,7 +132,7 @@ TEST_CASE("the least gap of two solids that are not convex is the least distance
 TEST_CASE(
     "smooth solids that are not convex touch with opposite normals, and with no gap after their gap is "
     "closed",
-    "[contact]") {
+    "[contact][long]") {
   Draws draws(6);
   for (const Kind& a : kinds())
     for (const Kind& b : kinds()) {
@@ -167,7 +167,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("contacts of two solids that are not convex do not depend on the order of the parts", "[contact]") {
+TEST_CASE("contacts of two solids that are not convex do not depend on the order of the parts",
+          "[contact][long]") {
   Draws draws(7);
   for (const Kind& a : kinds())
     for (const Kind& b : kinds()) {

@@ -339,7 +339,7 @@ TEST_CASE(
 
 TEST_CASE(
     "balloons in frictional contact with each other or a rigid part conserve linear momentum to rounding",
-    "[contact]") {
+    "[contact][long]") {
   for (const char* method : {"semi_implicit_euler", "linearly_implicit"})
     for (const bool rigid : {false, true}) {
       std::vector<double> angular;

@@ -394,7 +394,8 @@ double exact_spin(double t) {
 
 }  // namespace
 
-TEST_CASE("errors of sliding that begins, stops or reverses fall with the tolerance", "[error][contact]") {
+TEST_CASE("errors of sliding that begins, stops or reverses fall with the tolerance",
+          "[error][contact][long]") {
   for (const Problem& problem : problems())
     for (const char* method : {"dormand_prince", "dop853", "esdirk"})
       for (int digits = 4; digits <= (problem.constant_forces ? 10 : 8); ++digits) {

@@ -131,7 +131,7 @@ TEST_CASE("slender solids topple in the plane in which they lean", "[contact]") 
 TEST_CASE(
     "slender rods that are bent, tapered or twisted fall on a plane and come to rest, or roll and rock there "
     "at their energy",
-    "[contact]") {
+    "[contact][long]") {
   struct Rod {
     const char *shape, *link, *parameter;
     double value;
