@@ -194,7 +194,7 @@ class StableStepSearch {
 
   /// Limits the step by the eigenvalues of the motion about the state.
   void limit_by_motions() {
-    if (model_.islands().empty() && !has_stiffness(model_)) return;
+    if (model_.n_v() == 0 || (model_.islands().empty() && !has_stiffness(model_))) return;
     const auto limits = [&](double K, double D) { return std::isfinite(stable_step_of(method_, K, D)); };
     if (!limits(1, 0) && !limits(0, 1)) return;
     // Baumgarte's terms have a limit of their own.
