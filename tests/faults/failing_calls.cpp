@@ -56,15 +56,23 @@ struct Fault {
   std::string file;  ///< the name of the file
 };
 
-/// Returns what is wrong with the end of a run that could not lock a file; empty if all is right. Only the
-/// lock of the folder is necessary.
+/// Returns a description of the fault if a run that could not lock a file ended with the wrong code or
+/// message. Otherwise the result is empty. Only the lock of the folder is necessary.
 std::string wrong_without_lock(const std::string& file, int code, const std::string& output) {
   if (file == "pliant.lock")
     return code == 7 && has(output, "does not lock files") ? "" : "the lock is not named: " + output;
   return code == 0 && has(file, ".part-") ? "" : "code " + std::to_string(code) + ": " + output;
 }
 
-/// Lets one call of a run fail, and resumes the run. Returns what is wrong; empty if all is right.
+/// Returns a description of the fault if a run in which a call failed with `error` ended with the wrong code.
+/// Otherwise the result is empty. output: the text of the program.
+std::string wrong_code(int error, int code, const std::string& output) {
+  if (error == EINTR && code != 0) return "the program did not repeat the interrupted call: " + output;
+  return code == 0 || code == 7 ? "" : "code " + std::to_string(code) + ": " + output;
+}
+
+/// Makes one call of a run fail, and resumes the run. Returns a description of the first fault, or an empty
+/// text.
 std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
                             const std::map<std::string, std::string>& unbroken) {
   fs::remove_all(place / "broken");
@@ -73,8 +81,8 @@ std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
     return Action{false, now.number == fault.call ? error : 0};
   });
   const std::string told = place.output();
-  if (error == EINTR && ended.code != 0) return "not repeated: " + told;
-  if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
+  const std::string wrong_end = wrong_code(error, ended.code, told);
+  if (!wrong_end.empty()) return wrong_end;
   if (ended.code == 7 && !has(told, "pliant: error: ")) return "no message: " + told;
   if (error == ENOLCK || error == EOPNOTSUPP) {
     const std::string wrong = wrong_without_lock(fault.file, ended.code, told);
@@ -83,7 +91,8 @@ std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
   return place.wrong_after_resume("broken", unbroken);
 }
 
-/// Lets one call fail while the killed run is resumed, and resumes it again. Returns what is wrong.
+/// Makes one call fail while the killed run is resumed, and resumes it again. Returns a description of the
+/// first fault, or an empty text.
 std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
                                const std::map<std::string, std::string>& unbroken) {
   place.copy("killed", "broken");
@@ -91,8 +100,8 @@ std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
     return Action{false, now.number == fault.call ? fault.error : 0};
   });
   const std::string told = place.output();
-  if (fault.error == EINTR && ended.code != 0) return "not repeated: " + told;
-  if (ended.code != 0 && ended.code != 7) return "code " + std::to_string(ended.code) + ": " + told;
+  const std::string wrong = wrong_code(fault.error, ended.code, told);
+  if (!wrong.empty()) return wrong;
   return place.wrong_after_resume("broken", unbroken);
 }
 

@@ -125,8 +125,8 @@ class FaultyRun {
     for (std::string word; options >> word;) words.push_back(word);
     return run_traced(words, folder_.path.string(), (folder_ / ".out").string(), with_paths, at_call);
   }
-  /// Resumes a run that was broken. Returns what is wrong with it compared with the files of an unbroken run;
-  /// empty if all is right.
+  /// Resumes a run that was broken, and compares its files with those of an unbroken run. Returns a
+  /// description of the differences, or an empty text.
   std::string wrong_after_resume(const std::string& run,
                                  const std::map<std::string, std::string>& unbroken) const {
     const int code = resume(run);

@@ -10,7 +10,8 @@ using namespace faults;
 
 namespace {
 
-/// Breaks a run at a call and resumes it. The result is a text on what is wrong; empty if all is right.
+/// Breaks a run at a call and resumes it. Returns a description of the first fault, or an empty
+/// text.
 std::string kill_and_resume(const FaultyRun& place, long call,
                             const std::map<std::string, std::string>& unbroken) {
   fs::remove_all(place / "broken");
