@@ -32,7 +32,7 @@ class TermCheck {
         return (model_.parts()[i].motion != nullptr ? "the prescribed motion" : "the rotation matrix") +
                of_part(i);
       if (model_.parts()[i].q0 < 0) continue;
-      if (!w.inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
+      if (!w.M().allFinite()) return "the mass matrix M" + of_part(i);
       if (w.local && !w.local->force.allFinite()) return "the force on the nodes" + of_part(i);
       if (!w.local && !w.inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
     }

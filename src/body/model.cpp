@@ -35,12 +35,22 @@ std::vector<int> all_parts(const MultiBody& body) {
 
 }  // namespace
 
+RigidMass::RigidMass(const Inertia<double>& constant, const VecX<double>& floor) : inertia(constant) {
+  factor.compute(inertia.M, floor);
+  for (int k = 0; k < 6; ++k) {
+    VecMax<double> column = VecMax<double>::Unit(6, k);
+    factor.solve(column);
+    inverse.col(k) = column;
+  }
+}
+
 Model::Model(const MultiBody& body) : Model(body, all_parts(body)) {}
 
 Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part_numbers_(std::move(parts)) {
   if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity at time 0 is not finite");
   parts_.reserve(part_numbers_.size());
-  for (const int i : part_numbers_) add_part(*body.parts()[static_cast<std::size_t>(i)]);
+  RigidMasses masses;
+  for (const int i : part_numbers_) add_part(*body.parts()[static_cast<std::size_t>(i)], masses);
   add_springs();
   add_forces_and_torques();
   body.stabilization.check();
@@ -94,8 +104,8 @@ int Model::number_of(const Part& part) const {
                                                           : static_cast<int>(found - part_numbers_.begin());
 }
 
-void Model::add_part(Part& part) {
-  part.prepare();
+void Model::add_part(Part& part, RigidMasses& known) {
+  body_->prepare(part);
   PartModel m;
   m.part = &part;
   m.use = part.use();
@@ -122,12 +132,9 @@ void Model::add_part(Part& part) {
   m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
   for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part.inertia_floor(k);
   if (part.rigid()) {
-    m.rigid_factor.compute(part.rest_inertia().M, m.inertia_floor);
-    for (int k = 0; k < 6; ++k) {
-      VecMax<double> column = VecMax<double>::Unit(6, k);
-      m.rigid_factor.solve(column);
-      m.rigid_inverse.col(k) = column;
-    }
+    std::shared_ptr<const RigidMass>& mass = known[&part.constants()];
+    if (!mass) mass = std::make_shared<const RigidMass>(part.rest_inertia(), m.inertia_floor);
+    m.rigid_mass = mass;
   }
   parts_.push_back(std::move(m));
 }

@@ -31,7 +31,7 @@ bool has_torque(const JointModel& joint) {
 
 }  // namespace
 
-TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulation)
+TrajectoryTable::TrajectoryTable(const Scene& scene, Simulation& simulation)
     : scene_(&scene),
       simulation_(&simulation),
       parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMaxParts)) {
@@ -113,19 +113,20 @@ void TrajectoryTable::add_part(const State& state, std::size_t i, std::vector<do
   numbers.insert(numbers.end(), q, q + 7 + part.n_s);
   numbers.insert(numbers.end(), v, v + 6 + part.n_s);
   if (!centre_shown_[i]) return;
-  const PartWorkspace<double>& work = work_.parts[i];
+  const PartWorkspace<double>& work = simulation_->output_workspace().parts[i];
   add_vector(numbers, work.c + work.R * work.inertia.moment / work.inertia.mass);
 }
 
 void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   const Model& model = simulation_->model();
-  Ledger ledger = simulation_->dynamics().ledger(state, work_);
+  Workspace<double>& work = simulation_->output_workspace();
+  Ledger ledger = simulation_->dynamics().ledger(state, work);
   ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
   numbers.assign(1, state.time());
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
   for (const PlacedPoint& point : tracked_) add_vector(numbers, point.at(state));
   for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
-    const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work_);
+    const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work);
     add_vector(numbers, wrench.force);
     if (has_torque(model.joints()[static_cast<std::size_t>(j)])) add_vector(numbers, wrench.torque);
     numbers.push_back(model.gap(state, j));
@@ -139,7 +140,7 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   add_vector(numbers, ledger.angular_momentum);
 }
 
-void write_trajectory(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
+void write_trajectory(const std::filesystem::path& path, const Scene& scene, Simulation& simulation,
                       const Recording& recording) {
   TrajectoryTable table(scene, simulation);
   WholeFile file(path);

@@ -52,11 +52,12 @@ std::string Parameters::names() const {
 
 void Parameters::update() {
   dynamic_.clear();
+  flags_.resize(size());
+  frozen_.resize(size());
   for (int i = 0; i < size(); ++i) {
     Parameter& p = (*this)[i];
-    const auto at = static_cast<std::size_t>(i);
-    flags_[at] = p.dynamic;
-    frozen_[at] = p.rest_value();
+    flags_[i] = p.dynamic;
+    frozen_[i] = p.rest_value();
     if (p.dynamic) dynamic_.push_back(i);
     if (!p.initial_given) p.initial = p.rest_value();
     if (!p.limits_given) {

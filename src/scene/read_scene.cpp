@@ -158,7 +158,7 @@ class SceneReader {
       if (!is_new) faults_.twice(*entry->second.name, r.at("name"));
     }
     if (r.given("material")) check_material(r.at("material"));
-    PartReader reader(r, materials_, scene_->body.joint_solver.make_factor, scene_->end, faults_);
+    PartReader reader(r, materials_, scene_->body, scene_->end, faults_);
     std::unique_ptr<Part> made = reader.read();
     if (!made || !r.given("name") || scene_->body.find(r.text("name")) != nullptr) return;
     parts_[r.text("name")] = {&r.at("name"), &scene_->body.add(std::move(made)), reader.prepared()};

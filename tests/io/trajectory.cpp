@@ -157,7 +157,7 @@ TEST_CASE("for more than a hundred parts only totals are written, unless the sce
   Scene scene;
   for (int i = 0; i < 101; ++i) scene.body.add(make_part("p" + std::to_string(i), "sphere", {}, 1));
   scene.appearance.resize(101);
-  const Simulation simulation(scene.body);
+  Simulation simulation(scene.body);
   TrajectoryTable table(scene, simulation);
   CHECK(all_columns(table.columns(), simulation.model()).size() == 1 + 5 + kWorks + 1 + 6);
   std::vector<double> numbers;

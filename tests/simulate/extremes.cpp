@@ -33,7 +33,7 @@ TEST_CASE("N07: semi-axes that differ by a factor of a million have accurate acc
     CHECK(std::abs(work.v_dot[8]) <= 1e-10 * 9 * axes[2]);
     CHECK(work.v_dot.head<6>().norm() <= 1e-10);
     // After scaling to a unit diagonal M is as well conditioned as the matrix of a sphere.
-    const MatX<double> M = work.parts[0].inertia.M;
+    const MatX<double> M = work.parts[0].M();
     const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
     const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
     CHECK(symmetric_eigenvalues(scaled).minCoeff() > 0.1);

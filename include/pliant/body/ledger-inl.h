@@ -18,7 +18,7 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const PartModel& m, const Part
     ledger.local += motion.elastic;
     ledger.gravity -= g.dot(m.part->total_mass() * w.c + w.R * motion.moment);
   } else {
-    ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
+    ledger.kinetic += 0.5 * w.v_r.dot(w.M() * w.v_r);
     ledger.gravity -= g.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
   }
   const VecMax<double> stretch = w.q_s - m.rest_at(t);
@@ -74,7 +74,7 @@ PLIANT_INLINE Ledger Dynamics::ledger(double t, const State& state, Workspace<do
       momentum.resize(6);
       momentum << motion.momentum, motion.angular_momentum;
     } else {
-      momentum = w.inertia.M * w.v_r;
+      momentum = w.M() * w.v_r;
     }
     const Vec3<double> P = w.R * momentum.head<3>();
     ledger.momentum += P;

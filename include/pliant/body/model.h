@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <pliant/body/constraint/rigid_island.h>
@@ -15,6 +17,17 @@
 #include <pliant/solve/symmetric_factor.h>
 
 namespace pliant {
+
+/// The constant mass matrix of a rigid part. Parts that share their constants (part/constants_cache.h) share
+/// it, so that it stays in the cache from part to part.
+struct RigidMass {
+  /// constant: M (6 x 6), first moment and mass. floor: see SymmetricFactor.
+  RigidMass(const Inertia<double>& constant, const VecX<double>& floor);
+
+  Inertia<double> inertia;              ///< M, first moment and mass
+  SymmetricFactor<double> factor;       ///< of M
+  Eigen::Matrix<double, 6, 6> inverse;  ///< M^-1, with zeros for velocities without inertia
+};
 
 /// The entries of a part in the flat vectors q and v, its attachment points, and its constants.
 struct PartModel {
@@ -40,12 +53,11 @@ struct PartModel {
   /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
   /// shape s.
   std::vector<PointJet<double>> rigid_ports;
-  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
-  SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
-  std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
-  std::vector<int> port_place;                ///< number of each port in `joint_points`; -1: none
-  Eigen::Matrix3d R0;                         ///< orientation at time 0; constant for a fixed part
-  Part::Use use;                              ///< locks the part against changes
+  std::shared_ptr<const RigidMass> rigid_mass;  ///< of a rigid part; nullptr for other parts
+  std::vector<NodeWeights> node_weights;        ///< weights of each port, if the part deforms locally
+  std::vector<int> port_place;                  ///< number of each port in `joint_points`; -1: none
+  Eigen::Matrix3d R0;                           ///< orientation at time 0; constant for a fixed part
+  Part::Use use;                                ///< locks the part against changes
 
   /// Returns the rest values of the dynamic parameters at time t (s).
   VecMax<double> rest_at(double t) const {
@@ -232,7 +244,9 @@ class Model {
   int number_of(const Part& part) const;
   /// Whether this model contains a part of the body that has coordinates.
   bool moves(const Part* part) const { return part != nullptr && !part->fixed() && number_of(*part) >= 0; }
-  void add_part(Part& part);
+  /// The masses of the rigid parts that have been added, by their constants.
+  using RigidMasses = std::unordered_map<const PartConstants*, std::shared_ptr<const RigidMass>>;
+  void add_part(Part& part, RigidMasses& known);
   void add_springs();
   void add_forces_and_torques();
   void add_joint(const Joint& joint);

@@ -71,7 +71,7 @@ PLIANT_INLINE Joint& MultiBody::join(std::unique_ptr<Joint> joint) {
 
 PLIANT_INLINE Joint& MultiBody::join(const std::string& type, std::string name, const JointSetting& setting) {
   for (const Point* point : {&setting.from, &setting.to})
-    if (point->part != nullptr) parts_[static_cast<std::size_t>(index(*point->part))]->prepare();
+    if (point->part != nullptr) prepare(*parts_[static_cast<std::size_t>(index(*point->part))]);
   return join(make_joint(type, std::move(name), setting));
 }
 

@@ -75,6 +75,12 @@ class MultiBody {
   }
   Part& add(std::unique_ptr<Part> part);
 
+  /// Prepares a part of this body, or one that will be added to it. Parts with equal descriptions share their
+  /// constants (part/constants_cache.h). Throws what Part::prepare() throws. Not for several threads at once.
+  void prepare(Part& part) const { part.prepare(constants_); }
+  /// Number of parts whose constants prepare() has computed; all others share constants.
+  std::size_t n_computed() const { return constants_.computed(); }
+
   /// Adds a spring between two points: stiffness (N/m), damping (N s/m) and rest length (m). Throws
   /// std::invalid_argument if one of these is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
@@ -140,6 +146,7 @@ class MultiBody {
 
  private:
   std::vector<std::unique_ptr<Part>> parts_;
+  mutable ConstantsCache constants_;                // Model prepares the parts of a constant body
   std::unordered_map<std::string, int> number_of_;  // by name
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;

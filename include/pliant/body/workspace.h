@@ -28,8 +28,9 @@ struct PartWorkspace {
   // Stage 2, mass.
   /// M, (6 + n_s) x (6 + n_s), and g_q of Eq. (11). For a part that deforms locally, g_q is not computed, and
   /// M is n_x x n_x, the mass matrix of its velocities in a group. Stage 5 computes this M, unless neither a
-  /// joint nor a limit can push on the part.
+  /// joint nor a limit can push on the part. Stage 2 leaves inertia.M of a rigid part empty, see M().
   Inertia<S> inertia;
+  const PartModel* rigid = nullptr;  ///< set for a rigid part, whose constants replace inertia.M and `factor`
   // Stage 3, forces.
   /// Sum of all generalised forces on v_r, body frame, 6 + n_s; for a part that deforms locally, without
   /// those that LocalDeformation::forces() computes.
@@ -37,9 +38,8 @@ struct PartWorkspace {
   Vec<S, kWorks> power;             ///< power (W) of the works of this part: damping, drag, actuation
   std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
-  SymmetricFactor<S> factor;         ///< L D L^T of M
-  const PartModel* rigid = nullptr;  ///< set for a rigid part, whose constant M^-1 replaces `factor`
-  VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
+  SymmetricFactor<S> factor;  ///< L D L^T of M
+  VecX<S> a_r;                ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
   /// Factor, s^2: M is increased by this factor times K_s while impulses act after an implicit step, see
   /// method/implicit/stiff_projection_metric.h.
   double stiffening = 0;
@@ -48,6 +48,12 @@ struct PartWorkspace {
   std::vector<int> pressed;
   Counters counters;  ///< how often the kernels of the part ran
 
+  /// Returns M: RigidMass::inertia.M of a rigid part, else inertia.M.
+  const MatX<S>& M() const {
+    if constexpr (std::is_same_v<S, double>)
+      if (rigid != nullptr) return rigid->rigid_mass->inertia.M;
+    return inertia.M;
+  }
   /// Replaces x, n_x forces, by M^-1 x, with zeros for velocities without inertia.
   template <class Vector>
   void solve_mass(Vector&& x) const {
@@ -57,7 +63,7 @@ struct PartWorkspace {
         return;
       }
       if (rigid != nullptr) {
-        x = (rigid->rigid_inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
+        x = (rigid->rigid_mass->inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
         return;
       }
     }
@@ -66,14 +72,14 @@ struct PartWorkspace {
   /// Whether velocity k of v_r has no inertia now; its acceleration is zero.
   bool without_inertia(int k) const {
     if (local) return local->without_inertia.test(static_cast<std::size_t>(k));
-    return rigid != nullptr ? rigid->rigid_factor.excluded(k) : factor.excluded(k);
+    return rigid != nullptr ? rigid->rigid_mass->factor.excluded(k) : factor.excluded(k);
   }
 };
 
 /// Returns the mass matrix of v_r of a part, (6 + n_s) x (6 + n_s). For a part that deforms locally, it is
 /// the mass matrix without local displacements.
 inline const MatX<double>& mass_matrix(const PartWorkspace<double>& w) {
-  return w.local ? w.local->H0 : w.inertia.M;
+  return w.local ? w.local->H0 : w.M();
 }
 inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
   return w.inertia.M;

@@ -36,9 +36,9 @@ class TrajectoryTable {
  public:
   static constexpr std::size_t kMaxParts = 100;
 
-  /// scene: provides the tracks. simulation: provides the model, its dynamics, and the initial energy for the
-  /// energy balance. Both must outlive the table.
-  TrajectoryTable(const Scene& scene, const Simulation& simulation);
+  /// scene: provides the tracks. simulation: provides the model, its dynamics, the workspace of its ledger,
+  /// and the initial energy for the energy balance. Both must outlive the table.
+  TrajectoryTable(const Scene& scene, Simulation& simulation);
 
   /// Returns the columns of the table, which must outlive them.
   TableColumns columns() const;
@@ -52,8 +52,7 @@ class TrajectoryTable {
   void add_part(const State& state, std::size_t part, std::vector<double>& numbers) const;
 
   const Scene* scene_;
-  const Simulation* simulation_;
-  Workspace<double> work_;
+  Simulation* simulation_;
   bool parts_shown_;
   bool local_shown_ = false;        // whether a part deforms locally
   std::vector<bool> centre_shown_;  // per part: whether its centre of mass has columns
@@ -62,7 +61,7 @@ class TrajectoryTable {
 
 /// Writes trajectory.csv for all states of a recording. If the function throws, there is no new file. Throws
 /// std::system_error, RecordingMismatch.
-void write_trajectory(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
+void write_trajectory(const std::filesystem::path& path, const Scene& scene, Simulation& simulation,
                       const Recording& recording);
 
 }  // namespace pliant

@@ -20,7 +20,7 @@ PLIANT_INLINE void carry_momenta(const Model& model, const Workspace<double>& wo
     const Vec3<double> omega_before = v_before.segment<3>(m.v0 + 3), omega = state.v.segment<3>(m.v0 + 3);
     if (omega_before.isZero(0) && omega.isZero(0)) continue;
     const PartWorkspace<double>& w = work.parts[i];
-    const MatX<double>& M = w.inertia.M;
+    const MatX<double>& M = w.M();
     const Vec3<double> r = w.inertia.moment / w.inertia.mass;
     const Mat3<double> I = M.block<3, 3>(3, 3) + w.inertia.mass * skew(r) * skew(r);
     auto angular_momentum = [&](const VecX<double>& v) -> Vec3<double> {
@@ -34,7 +34,7 @@ PLIANT_INLINE void carry_momenta(const Model& model, const Workspace<double>& wo
     const Vec3<double> without_gyroscopic = L + h * omega_before.cross(angular_momentum(v_before));
     const Vec3<double> impulse = quaternion(-h * omega) * without_gyroscopic - L;
     const Vec3<double> change = w.rigid != nullptr
-                                    ? Vec3<double>(w.rigid->rigid_inverse.block<3, 3>(3, 3) * impulse)
+                                    ? Vec3<double>(w.rigid->rigid_mass->inverse.block<3, 3>(3, 3) * impulse)
                                     : Vec3<double>(I.ldlt().solve(impulse));
     const auto theta = state.q.segment<4>(m.q0 + 3);
     state.v.segment<3>(m.v0 + 3) += change;

@@ -232,25 +232,25 @@ void sum_over_mass_points(const PartEvaluation& part, const MassPoints& points, 
     out.g_q.setConstant(P(0.0));
 }
 
-/// Computes g_q of a rigid part from its constant M and first moment.
+/// Computes g_q of a rigid part. constant: its M and first moment.
 template <class P>
-void gyroscopic_force(const Vec3<P>& omega, Inertia<P>& out, Counters& counters) {
-  out.g_q.resize(6);
+void gyroscopic_force(const Inertia<P>& constant, const Vec3<P>& omega, VecX<P>& g_q, Counters& counters) {
+  g_q.resize(6);
   if (all_exactly_zero(omega)) {
-    out.g_q.setConstant(P(0.0));
+    g_q.setConstant(P(0.0));
     return;
   }
   ++counters.inertial_forces;
-  const Vec3<P> centripetal = omega.cross(omega.cross(out.moment));
+  const Vec3<P> centripetal = omega.cross(omega.cross(constant.moment));
   Vec3<P> L;
   for (int i = 0; i < 3; ++i) {
     L[i] = P(0.0);
-    for (int j = 0; j < 3; ++j) L[i] += omega[j] * out.M(3 + i, 3 + j);
+    for (int j = 0; j < 3; ++j) L[i] += omega[j] * constant.M(3 + i, 3 + j);
   }
   const Vec3<P> gyroscopic = omega.cross(L);
   for (int r = 0; r < 3; ++r) {
-    out.g_q[r] = -centripetal[r];
-    out.g_q[3 + r] = -gyroscopic[r];
+    g_q[r] = -centripetal[r];
+    g_q[3 + r] = -gyroscopic[r];
   }
 }
 
@@ -261,7 +261,7 @@ void evaluate_rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, I
   out.mass = rest.mass;
   out.M = rest.M.template cast<P>();
   out.moment = rest.moment.template cast<P>();
-  gyroscopic_force(omega, out, counters);
+  gyroscopic_force(out, omega, out.g_q, counters);
 }
 
 /// Copies one lane of a jet to a point. Without rates, p1 and p2 are set to zero.
@@ -330,11 +330,11 @@ PLIANT_INLINE LinearInertia make_linear_inertia(const Part& part, const MassPoin
 template <class P>
 void PartEvaluation::evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                                          Inertia<P>& out, Counters& counters) const {
-  if (rigid()) return detail::evaluate_rigid_inertia<P>(constants_.rest_inertia, omega, out, counters);
-  if (!constants_.linear_inertia)
-    return detail::sum_over_mass_points<P>(*this, constants_.mass_points, {q_s, q_s_dot, omega}, out,
+  if (rigid()) return detail::evaluate_rigid_inertia<P>(constants_->rest_inertia, omega, out, counters);
+  if (!constants_->linear_inertia)
+    return detail::sum_over_mass_points<P>(*this, constants_->mass_points, {q_s, q_s_dot, omega}, out,
                                            counters);
-  constants_.linear_inertia->evaluate(q_s, q_s_dot, omega, out);
+  constants_->linear_inertia->evaluate(q_s, q_s_dot, omega, out);
   ++counters.mass_matrices;
   counters.inertial_forces += detail::all_exactly_zero(q_s_dot) && detail::all_exactly_zero(omega) ? 0 : 1;
 }
@@ -350,9 +350,9 @@ PLIANT_INLINE void PartEvaluation::evaluate_inertia(const VecMax<Dual<1>>& q_s,
                                                     Counters& counters) const {
   evaluate_inertia_of(q_s, q_s_dot, omega, out, counters);
 }
-PLIANT_INLINE void PartEvaluation::rigid_force(const Vec3<double>& omega, Inertia<double>& out,
-                                               Counters& counters) {
-  detail::gyroscopic_force<double>(omega, out, counters);
+PLIANT_INLINE void PartEvaluation::rigid_force(const Inertia<double>& constant, const Vec3<double>& omega,
+                                               VecX<double>& g_q, Counters& counters) {
+  detail::gyroscopic_force<double>(constant, omega, g_q, counters);
 }
 
 PLIANT_INLINE void PartEvaluation::points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,

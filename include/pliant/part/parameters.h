@@ -78,7 +78,7 @@ class Parameters {
   ParameterValues<P> expand(const Q& q_s, const Q& q_s_dot) const {
     ParameterValues<P> values;
     for (std::size_t i = 0; i < all_.size(); ++i) {
-      values.b[i] = P(frozen_[i]);
+      values.b[i] = P(frozen_[static_cast<Eigen::Index>(i)]);
       values.b_dot[i] = P(0.0);
     }
     for (std::size_t k = 0; k < dynamic_.size(); ++k) {
@@ -95,8 +95,8 @@ class Parameters {
   std::vector<Parameter> all_;
   std::vector<LinkInfo> links_, acting_;
   std::vector<int> dynamic_;
-  std::array<bool, kMaxParameters> flags_{};
-  std::array<double, kMaxParameters> frozen_{};
+  VecX<bool> flags_;     // of all parameters: whether each is dynamic
+  VecX<double> frozen_;  // of all parameters: rest values at time 0
   int n_shape_;
 };
 

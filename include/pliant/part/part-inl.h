@@ -1,6 +1,9 @@
 // Function bodies of Part: the steps that compute the constants of a part.
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <pliant/math/header_only.h>
@@ -11,35 +14,52 @@
 namespace pliant {
 
 PLIANT_INLINE void Part::prepare() {
+  ConstantsCache of_this_part;
+  prepare(of_this_part);
+}
+
+PLIANT_INLINE void Part::prepare(ConstantsCache& known) {
   if (prepared()) return;
   update_parameters();
   check();
-  constants_ = PartConstants();
-  constants_.K_s = dynamic_stiffness();
-  compute_size();
-  if (given_inertia()) {
-    use_given_inertia();
+  std::optional<ConstantsKey> key = constants_key();
+  std::shared_ptr<const PartConstants> shared = key ? known.find(*key) : nullptr;
+  if (shared) {
+    constants_ = std::move(shared);
   } else {
-    const double volume = compute_inertia();
-    compute_elasticity(volume);
+    compute_constants();
+    if (key) known.store(*std::move(key), constants_);
   }
   set_unchanged();
 }
 
-PLIANT_INLINE void Part::compute_size() {
-  std::vector<Material<double>> surface;
-  for (int i = 0; i < 16; ++i)
-    for (int j = -4; j <= 4; ++j) surface.push_back(material_at(j * kPi / 8, i * kPi / 8));
-  constants_.size = s(surface, parameters().rest()).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
+PLIANT_INLINE void Part::compute_constants() {
+  const auto computed = std::make_shared<PartConstants>();
+  constants_ = computed;  // the steps below evaluate this part
+  computed->K_s = dynamic_stiffness();
+  compute_size(*computed);
+  if (given_inertia() != nullptr) return use_given_inertia(*computed);
+  const double volume = compute_inertia(*computed);
+  compute_elasticity(volume, *computed);
 }
 
-PLIANT_INLINE void Part::use_given_inertia() {
+PLIANT_INLINE void Part::compute_size(PartConstants& out) const {
+  static const std::vector<Material<double>> surface = [] {
+    std::vector<Material<double>> sample;
+    for (int i = 0; i < 16; ++i)
+      for (int j = -4; j <= 4; ++j) sample.push_back(material_at(j * kPi / 8, i * kPi / 8));
+    return sample;
+  }();
+  out.size = s(surface, parameters().rest()).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
+}
+
+PLIANT_INLINE void Part::use_given_inertia(PartConstants& out) const {
   throw_if_folded(*this, parameters().rest(), "rest");
-  constants_.rest_inertia = *given_inertia();
+  out.rest_inertia = *given_inertia();
 }
 
-PLIANT_INLINE double Part::compute_inertia() {
-  MassPoints& points = constants_.mass_points;
+PLIANT_INLINE double Part::compute_inertia(PartConstants& out) const {
+  MassPoints& points = out.mass_points;
   points = place_mass_points(*this);
   const int n = parameters().n_dynamic();
   VecMax<double> q_s(n);
@@ -50,21 +70,21 @@ PLIANT_INLINE double Part::compute_inertia() {
     sum_inertia(*this, points, q_s, VecMax<double>::Zero(n), Vec3<double>::Zero(), inertia, unused);
     return inertia;
   };
-  constants_.rest_inertia = inertia_at_rest();
+  out.rest_inertia = inertia_at_rest();
   const double volume = total_mass() / density();
   if (given_mass()) {
     const double factor = *given_mass() / total_mass();
     for (Pack& m : points.mass) m *= Pack(factor);
-    constants_.rest_inertia = inertia_at_rest();
+    out.rest_inertia = inertia_at_rest();
   }
-  if (linear()) constants_.linear_inertia = make_linear_inertia(*this, points);
+  if (linear()) out.linear_inertia = make_linear_inertia(*this, points);
   return volume;
 }
 
-PLIANT_INLINE void Part::compute_elasticity(double volume) {
-  if (local_settings()) constants_.local = make_local_deformation(*this, *local_settings());
-  if (continuum_settings() && parameters().n_dynamic() > 0)
-    constants_.continuum = std::make_unique<ContinuumEnergy>(*this, *continuum_settings(), volume);
+PLIANT_INLINE void Part::compute_elasticity(double volume, PartConstants& out) const {
+  if (local_settings() != nullptr) out.local = make_local_deformation(*this, *local_settings());
+  if (continuum_settings() != nullptr && parameters().n_dynamic() > 0)
+    out.continuum = std::make_unique<ContinuumEnergy>(*this, *continuum_settings(), volume);
 }
 
 PLIANT_INLINE double Part::inertia_floor(int k) const {

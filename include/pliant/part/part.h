@@ -21,33 +21,40 @@ class Part : public PartEvaluation {
   /// std::invalid_argument if the description contradicts itself, if the part folds over at its rest or
   /// initial values, or if its mass points, its elasticity or its local deformation cannot be made.
   void prepare();
+  /// Does the same, and shares the constants with all parts of equal description that were prepared with this
+  /// cache. Shared constants have the bits that prepare() computes. MultiBody::prepare() uses the cache of a
+  /// body.
+  void prepare(ConstantsCache& known);
   bool prepared() const { return !changed(); }
 
   // The functions below are valid after prepare().
 
+  /// The results of prepare(). Parts that share them return one object.
+  const PartConstants& constants() const { return *constants_; }
+
   /// Number of local coordinates; 0 if the part does not deform locally.
-  int n_d() const { return constants_.local ? static_cast<int>(constants_.local->n_d()) : 0; }
+  int n_d() const { return constants_->local ? static_cast<int>(constants_->local->n_d()) : 0; }
   /// Number of velocities: linear, angular, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_v() const { return fixed() ? 0 : 6 + n_s() + n_d(); }
   /// Number of coordinates: position, quaternion, dynamic parameters, local coordinates; 0 for a fixed part.
   int n_q() const { return fixed() ? 0 : 7 + n_s() + n_d(); }
 
-  const MassPoints& mass_points() const { return constants_.mass_points; }
-  double total_mass() const { return constants_.rest_inertia.mass; }
+  const MassPoints& mass_points() const { return constants_->mass_points; }
+  double total_mass() const { return constants_->rest_inertia.mass; }
   /// The inertia at rest. A rigid part has this inertia at all times.
-  const Inertia<double>& rest_inertia() const { return constants_.rest_inertia; }
+  const Inertia<double>& rest_inertia() const { return constants_->rest_inertia; }
   /// The largest absolute coordinate of the surface at rest in the body frame, m, from a sample of its
   /// points.
-  double size() const { return constants_.size; }
+  double size() const { return constants_->size; }
   /// Returns the smallest inertia of the k-th dynamic parameter (kg for a length, else kg m^2) that is not a
   /// rounding error for a part of this mass and size. A diagonal entry of M up to this value counts as zero.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.
-  const MatX<double>& K_s() const { return constants_.K_s; }
+  const MatX<double>& K_s() const { return constants_->K_s; }
   /// The strain energy of the elastic material; nullptr if the part has no elastic material or no dynamic
   /// parameter.
-  const ContinuumEnergy* continuum() const { return constants_.continuum.get(); }
+  const ContinuumEnergy* continuum() const { return constants_->continuum.get(); }
   /// Returns d2E/dq_s2 at q_s (n_s x n_s). E is the sum of the energies of K_s and of the elastic material.
   MatX<double> elastic_stiffness(const VecMax<double>& q_s) const;
   /// Returns the matrix that beta multiplies in the damping of q_s (n_s x n_s): K_s, plus
@@ -55,19 +62,20 @@ class Part : public PartEvaluation {
   /// semidefinite.
   MatX<double> strain_stiffness(const VecMax<double>& q_s) const;
   /// The local deformation; nullptr if the part does not deform locally.
-  const LocalDeformation* local() const { return constants_.local.get(); }
+  const LocalDeformation* local() const { return constants_->local.get(); }
 
  protected:
   using PartEvaluation::PartEvaluation;
 
  private:
-  // The steps of prepare(), in order.
-  void compute_size();
-  void use_given_inertia();
+  void compute_constants();
+  // The steps of compute_constants(), in order. out: the object that constants() returns.
+  void compute_size(PartConstants& out) const;
+  void use_given_inertia(PartConstants& out) const;
   /// Computes the mass points and the inertia at rest. Returns the volume of a solid (m^3) or the area of a
   /// shell (m^2).
-  double compute_inertia();
-  void compute_elasticity(double volume);
+  double compute_inertia(PartConstants& out) const;
+  void compute_elasticity(double volume, PartConstants& out) const;
 };
 
 }  // namespace pliant

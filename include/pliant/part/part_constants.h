@@ -1,5 +1,5 @@
 // The constants of a part: the quantities that Part::prepare() computes once from the description and that no
-// step changes.
+// step changes. Parts with equal descriptions can share them (constants_cache.h).
 #pragma once
 
 #include <memory>

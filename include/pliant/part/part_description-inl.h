@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <typeinfo>
 
 #include <pliant/math/eigenvalues.h>
 #include <pliant/math/header_only.h>
@@ -42,6 +44,32 @@ inline Inertia<double> rigid_part_inertia(double mass, const Mat3<double>& about
   inertia.g_q = VecMax<double>::Zero(6);
   return inertia;
 }
+
+/// Appends the bits of numbers, addresses and texts to a key.
+class KeyWriter {
+ public:
+  explicit KeyWriter(ConstantsKey& key) : key_(key) {}
+  void add(double x) {
+    std::uint64_t bits;
+    static_assert(sizeof bits == sizeof x);
+    std::memcpy(&bits, &x, sizeof bits);
+    key_.push_back(bits);
+  }
+  void add(const void* address) { key_.push_back(reinterpret_cast<std::uintptr_t>(address)); }
+  template <class Matrix>
+  void add_all(const Matrix& numbers) {
+    key_.push_back(static_cast<std::uint64_t>(numbers.size()));
+    for (Eigen::Index i = 0; i < numbers.size(); ++i) add(numbers.data()[i]);
+  }
+  void add_text(const std::string& text) {
+    key_.push_back(text.size());
+    for (const char c : text) key_.push_back(static_cast<unsigned char>(c));
+  }
+  void add_count(std::size_t n) { key_.push_back(n); }
+
+ private:
+  ConstantsKey& key_;
+};
 
 }  // namespace detail
 
@@ -249,7 +277,8 @@ PLIANT_INLINE Part& PartDescription::inertia(double mass, const Mat3<double>& ab
     refuse("no body has this inertia: its principal moments about the centre of mass are " +
            detail::part_text(I[0]) + ", " + detail::part_text(I[1]) + ", " + detail::part_text(I[2]) +
            "; each must be positive and at most the sum of the others, and the matrix must be symmetric");
-  given_inertia_ = detail::rigid_part_inertia(mass, about_origin, centre);
+  given_inertia_ =
+      std::make_unique<const Inertia<double>>(detail::rigid_part_inertia(mass, about_origin, centre));
   return part();
 }
 
@@ -260,7 +289,7 @@ PLIANT_INLINE Part& PartDescription::deform_locally(LocalSettings settings) {
            " of its local deformation must be numbers >= 0");
   if (settings.order != 1 && settings.order != 2)
     refuse("there are no elements of order " + std::to_string(settings.order) + "; expected 1 or 2");
-  local_settings_ = std::move(settings);
+  local_settings_ = std::make_unique<const LocalSettings>(std::move(settings));
   return part();
 }
 
@@ -271,7 +300,7 @@ PLIANT_INLINE Part& PartDescription::elasticity(ContinuumSettings settings) {
   } catch (const std::invalid_argument& e) {
     refuse(e.what());
   }
-  continuum_settings_ = std::move(settings);
+  continuum_settings_ = std::make_unique<const ContinuumSettings>(std::move(settings));
   return part();
 }
 
@@ -294,7 +323,7 @@ PLIANT_INLINE Part& PartDescription::prescribe(PrescribedMotion motion) {
   if (!start.c.allFinite() || !start.R.allFinite()) refuse("its motion is not finite at time 0");
   c0_ = start.c;
   R0_ = motion.orientation_at(0);
-  motion_ = std::move(motion);
+  motion_ = std::make_unique<const PrescribedMotion>(std::move(motion));
   fixed_ = true;
   return part();
 }
@@ -365,6 +394,43 @@ PLIANT_INLINE MatX<double> PartDescription::dynamic_stiffness() const {
     for (int j = 0; j < n; ++j)
       K_s(i, j) = stiffness_(dynamic[static_cast<std::size_t>(i)], dynamic[static_cast<std::size_t>(j)]);
   return K_s;
+}
+
+PLIANT_INLINE std::optional<ConstantsKey> PartDescription::constants_key() const {
+  if (local_settings_) return std::nullopt;
+  ConstantsKey key;
+  detail::KeyWriter writer(key);
+  writer.add(&typeid(part()));  // the type fixes the shape, and the chain unless it is composed at run time
+  writer.add_count(parameters_.all_links().size());
+  for (const LinkInfo& link : parameters_.all_links()) {
+    writer.add(link.parameters);
+    writer.add_count(static_cast<std::size_t>(link.amplitudes));
+  }
+  for (int i = 0; i < parameters_.size(); ++i) {
+    const Parameter& p = parameters_[i];
+    writer.add(p.spec);
+    writer.add_count(p.dynamic ? 1 : 0);
+    for (const double x : {p.rest_value(), p.initial, p.limits.min, p.limits.max}) writer.add(x);
+  }
+  writer.add_all(dynamic_stiffness());
+  writer.add_count(shell_ ? 1 : 0);
+  writer.add_count(fixed_ ? 1 : 0);
+  writer.add(density_);
+  writer.add_count(total_mass_ ? 1 : 0);
+  writer.add(total_mass_.value_or(0));
+  writer.add_count(given_inertia_ ? 1 : 0);
+  if (given_inertia_) {
+    writer.add(given_inertia_->mass);
+    writer.add_all(given_inertia_->moment);
+    writer.add_all(given_inertia_->M);
+  }
+  writer.add_count(continuum_settings_ ? 1 : 0);
+  if (continuum_settings_) {
+    writer.add_text(continuum_settings_->law);
+    for (const double x : {continuum_settings_->E, continuum_settings_->nu_P, continuum_settings_->thickness})
+      writer.add(x);
+  }
+  return key;
 }
 
 PLIANT_INLINE bool PartDescription::linear() const {

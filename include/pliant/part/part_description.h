@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include <pliant/part/constants_cache.h>
 #include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
 #include <pliant/part/local/local_deformation.h>
@@ -92,7 +93,7 @@ class PartDescription {
   /// Whether the part has no coordinates because it is fixed or its motion is prescribed.
   bool fixed() const { return fixed_; }
   /// The prescribed motion; nullptr if there is none.
-  const PrescribedMotion* motion() const { return motion_ ? &*motion_ : nullptr; }
+  const PrescribedMotion* motion() const { return motion_.get(); }
   bool shell() const { return shell_; }
   /// The density that the constructor got: kg/m^3 of a solid, kg/m^2 of a shell. mass() and inertia() do not
   /// change this value.
@@ -138,11 +139,16 @@ class PartDescription {
 
   // Settings that only prepare() needs.
   const std::optional<double>& given_mass() const { return total_mass_; }
-  const std::optional<Inertia<double>>& given_inertia() const { return given_inertia_; }
-  const std::optional<LocalSettings>& local_settings() const { return local_settings_; }
-  const std::optional<ContinuumSettings>& continuum_settings() const { return continuum_settings_; }
+  /// nullptr if the user did not set them.
+  const Inertia<double>* given_inertia() const { return given_inertia_.get(); }
+  const LocalSettings* local_settings() const { return local_settings_.get(); }
+  const ContinuumSettings* continuum_settings() const { return continuum_settings_.get(); }
   /// K_s over the dynamic parameters.
   MatX<double> dynamic_stiffness() const;
+  /// Returns the bits of all settings on which the constants depend; equal keys give equal constants. Returns
+  /// nullopt for a part that deforms locally, because its laws are functions, which cannot be compared.
+  /// update_parameters() must have run.
+  std::optional<ConstantsKey> constants_key() const;
 
   /// Whether a setter ran since the constants were computed.
   bool changed() const { return changed_; }
@@ -170,10 +176,11 @@ class PartDescription {
   Parameters parameters_;
   double density_;
   std::optional<double> total_mass_;
-  std::optional<Inertia<double>> given_inertia_;
-  std::optional<PrescribedMotion> motion_;
-  std::optional<LocalSettings> local_settings_;
-  std::optional<ContinuumSettings> continuum_settings_;
+  // Settings that few parts have are on the heap, so that a part without them is small.
+  std::unique_ptr<const Inertia<double>> given_inertia_;
+  std::unique_ptr<const PrescribedMotion> motion_;
+  std::unique_ptr<const LocalSettings> local_settings_;
+  std::unique_ptr<const ContinuumSettings> continuum_settings_;
   MatX<double> stiffness_;  // K_s over all parameters, frozen ones included
   double alpha_ = 0, beta_ = 0, drag_ = 0;
   bool fixed_ = false, shell_ = false, changed_ = true;

@@ -52,6 +52,11 @@ inline Vec3<double> below_tip(const Vec3<double>& e) {
 
 }  // namespace detail
 
+PLIANT_INLINE const std::shared_ptr<const PartConstants>& PartEvaluation::no_constants() {
+  static const auto none = std::make_shared<const PartConstants>();
+  return none;
+}
+
 PLIANT_INLINE void PartEvaluation::jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
                                         JetBatch<Dual<1, Pack>>& batch) const {
   constexpr int block = 8;

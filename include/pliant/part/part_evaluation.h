@@ -31,9 +31,9 @@ class PartEvaluation : public PartDescription {
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes g_q of a rigid part from out.M and out.moment, which must already have the values of the part.
-  /// Only out.g_q changes.
-  static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
+  /// Computes g_q of a rigid part. constant: its M and first moment.
+  static void rigid_force(const Inertia<double>& constant, const Vec3<double>& omega, VecX<double>& g_q,
+                          Counters& counters);
   /// Computes position, J, J q_s_dot and Jdot q_s_dot of material points in the body frame, without local
   /// deformation. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
@@ -107,12 +107,15 @@ class PartEvaluation : public PartDescription {
   /// Returns the position that the chain maps to p (m, body frame).
   virtual Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
-  PartConstants constants_;
+  /// The constants; those of a default PartConstants before Part::prepare().
+  std::shared_ptr<const PartConstants> constants_ = no_constants();
 
  private:
   template <class P>
   void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                            Inertia<P>& out, Counters& counters) const;
+  /// Returns the constants of parts that are not prepared.
+  static const std::shared_ptr<const PartConstants>& no_constants();
   /// Returns the undeformed position that the chain maps to p; at a tip the pole of the shape.
   Vec3<double> undeformed_point(const Vec3<double>& p, const ParameterValues<double>& values) const;
 };

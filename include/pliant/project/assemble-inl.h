@@ -159,7 +159,7 @@ class Assembly {
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];
-      if (w.local) w.inertia.M = w.local->H0;
+      w.inertia.M = mass_matrix(w);
       MatX<double>& H = w.inertia.M;
       H.block<3, 3>(3, 3) *= rotation_cost;
       H.bottomRightCorner(m.n_s, m.n_s) += m.part->strain_stiffness(q_s(m)) / eps_;

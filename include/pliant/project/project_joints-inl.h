@@ -86,7 +86,7 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
       keep_rigid_momenta(m, from, to, state);
       continue;
     }
-    VecMax<double> momentum = from.inertia.M * from.v_r;
+    VecMax<double> momentum = from.M() * from.v_r;
     const Vec3<double> P = from.R * momentum.head<3>();
     const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
     momentum.head<3>() = to.R.transpose() * P;

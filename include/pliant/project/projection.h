@@ -96,7 +96,7 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
                       const VecMax<double, Max>& y) {
   double sum = 0;
   for (int i = 0; i < group.parts(); ++i) {
-    const MatX<double>& M = group.workspace(i).inertia.M;
+    const MatX<double>& M = group.workspace(i).M();
     const auto before = group.share(x, i), after = group.share(y, i);
     for (Eigen::Index k = 0; k < M.cols(); ++k)
       sum += 0.5 * (before[k] + after[k]) * M.col(k).dot(after - before);

@@ -67,6 +67,8 @@ class Simulation {
 
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
+  /// Returns the workspace of ledger(), for other evaluations of output. No step reads it.
+  Workspace<double>& output_workspace() { return output_work_; }
   /// The energy of the first state, J, to which the balance refers. A resumed run sets it.
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }

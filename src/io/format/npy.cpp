@@ -160,7 +160,7 @@ void NpyWriter::flush() {
       static_cast<std::int64_t>(kHeader + row_bytes(columns_) * static_cast<std::size_t>(rows_in_file_));
   write_at(descriptor_, pending_.data(), pending_bytes(), offset, path_);
   write_header();
-  pending_.clear();
+  pending_ = {};  // also frees the memory, which is large for many parts
 }
 
 void NpyWriter::flush_to_disk() {

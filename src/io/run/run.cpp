@@ -55,7 +55,7 @@ int automatic_threads(Scene& scene) {
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
     if (part->fixed()) continue;
-    part->prepare();
+    scene.body.prepare(*part);
     cost += evaluation_cost(*part);
   }
   const int available = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

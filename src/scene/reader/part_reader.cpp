@@ -69,7 +69,8 @@ std::unique_ptr<Part> PartReader::read() {
   part_->velocity(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
   if (r_.given("motion")) read_motion(r_.object("motion"));
-  if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), make_factor_, faults_, *part_);
+  if (r_.given("local") || r_.faulty("local"))
+    read_local(r_.object("local"), body_.joint_solver.make_factor, faults_, *part_);
   read_elasticity();
   check_rigid_keys();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
@@ -270,7 +271,7 @@ std::string PartReader::without_name(const std::invalid_argument& e) const {
 
 void PartReader::prepare() {
   try {
-    part_->prepare();
+    body_.prepare(*part_);
   } catch (const LocalFault& e) {
     return report_local_fault(e);
   } catch (const std::invalid_argument& e) {

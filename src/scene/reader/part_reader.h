@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <pliant/part/part.h>
+#include <pliant/body/multibody.h>
 #include <pliant/scene/reader/reader.h>
 
 #include "scene/scene_faults.h"
@@ -16,11 +16,11 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: the materials of the scene by name. make_factor: makes the sparse factorisation for modes of
-  /// a mesh. end: end of the run, s.
-  PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
-             const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
-      : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
+  /// materials: the materials of the scene by name. body: the body that prepares the part, and whose joint
+  /// solver makes the sparse factorisation for modes of a mesh. end: end of the run, s.
+  PartReader(const Reader& part, const std::map<std::string, Reader>& materials, const MultiBody& body,
+             double end, SceneFaults& faults)
+      : r_(part), materials_(materials), body_(body), end_(end), faults_(faults) {}
 
   /// Returns the part, or null if its shape is missing or unknown, or if its deformations have a fault.
   /// Faults are reported.
@@ -48,7 +48,7 @@ class PartReader {
 
   const Reader& r_;
   const std::map<std::string, Reader>& materials_;
-  const MakeSparseFactor& make_factor_;
+  const MultiBody& body_;
   double end_;
   SceneFaults& faults_;
   std::unique_ptr<Part> part_;

@@ -62,12 +62,13 @@ PLIANT_INLINE void AugmentedFactor::factor(const std::vector<PartWorkspace<doubl
   double* value = K_.valuePtr();  // values are in the order of the entries in the constructor
   for (std::size_t p = 0; p < island_->parts.size(); ++p) {
     const PartWorkspace<double>& w = parts[at(island_->parts[p])];
-    const int n = static_cast<int>(w.inertia.M.rows());
+    const MatX<double>& M = w.M();
+    const int n = static_cast<int>(M.rows());
     for (int i = 0; i < n; ++i) {
       const bool without_inertia = w.without_inertia(i);
       for (int k = i; k < n; ++k) {
         const bool any_without_inertia = without_inertia || w.without_inertia(k);
-        *value++ = any_without_inertia ? (k == i ? 1 : 0) : w.inertia.M(k, i);
+        *value++ = any_without_inertia ? (k == i ? 1 : 0) : M(k, i);
       }
       for (const auto& [j, side] : sides_of_[p]) {
         const JointModel& joint = model_->joints()[at(j)];

@@ -152,7 +152,7 @@ void solve_side(const PartModel& part, const PartWorkspace<S>& w, int rows, int 
   S* Y = work.Y.data() + offset;
   if constexpr (std::is_same_v<S, double>) {
     if (w.rigid != nullptr && rows == 3) {
-      FixedSide<S, 6, 3>(Y).noalias() = w.rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
+      FixedSide<S, 6, 3>(Y).noalias() = w.rigid->rigid_mass->inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
       return;
     }
     if (part.local != nullptr) {

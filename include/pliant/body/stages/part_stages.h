@@ -126,7 +126,7 @@ void evaluate_positions(const PartModel& m, double t, const VecX<S>& q, const Ve
 
 // Stage 2: mass.
 
-/// Stage 2: M and g_q of Eq. (11). M of a rigid part stays in the workspace from one evaluation to the next.
+/// Stage 2: M and g_q of Eq. (11). A rigid part has constant M, mass and first moment.
 /// A part that deforms locally has its masses from LocalDeformation::masses(), and no g_q: stage 3 adds the
 /// inertial forces.
 template <class S>
@@ -140,7 +140,13 @@ void evaluate_mass(const PartModel& m, PartWorkspace<S>& w) {
       return;
     }
   if constexpr (std::is_same_v<S, double>)
-    if (w.rigid == &m) return Part::rigid_force(omega, w.inertia, w.counters);
+    if (m.rigid_mass != nullptr) {
+      const Inertia<double>& constant = m.rigid_mass->inertia;
+      w.rigid = &m;
+      w.inertia.mass = constant.mass;
+      w.inertia.moment = constant.moment;
+      return Part::rigid_force(constant, omega, w.inertia.g_q, w.counters);
+    }
   m.part->evaluate_inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
 }
 
@@ -190,7 +196,7 @@ void add_gravity_power(const PartModel& m, const TimeVector& gravity, double t, 
 template <class S>
 void add_drag(const PartModel& m, PartWorkspace<S>& w) {
   if (!(m.drag > 0)) return;
-  const MatX<S>& M = w.inertia.M;
+  const MatX<S>& M = w.M();
   for (int i = 0; i < 6 + m.n_s; ++i) {
     S momentum(0.0);
     for (int k = 0; k < 6 + m.n_s; ++k) momentum += M(i, k) * w.v_r[k];
@@ -217,7 +223,7 @@ void evaluate_own_forces(const PartModel& m, const Vec3<double>& gravity, double
     }
   w.f = w.inertia.g_q;  // Eq. (11): g_q enters the equation of motion here
   const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
-  const MatX<S>& M = w.inertia.M;
+  const MatX<S>& M = w.M();
   // Gravity acts like an acceleration of the frame: f = M (g, 0, 0).
   for (int i = 0; i < 6 + n; ++i)
     for (int k = 0; k < 3; ++k) w.f[i] += M(i, k) * g_body[k];
@@ -243,7 +249,7 @@ void add_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 /// Returns whether any velocity of a part has no inertia now.
 inline bool has_inertialess_velocity(const PartWorkspace<double>& w) {
   if (w.local) return w.local->without_inertia.any();
-  return w.rigid != nullptr ? w.rigid->rigid_factor.any_excluded() : w.factor.any_excluded();
+  return w.rigid != nullptr ? w.rigid->rigid_mass->factor.any_excluded() : w.factor.any_excluded();
 }
 
 /// Factors M of a part. M of a rigid part has a constant factor. M of a part that deforms locally is computed
@@ -255,9 +261,9 @@ inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
     w.inertia.M = w.local->A_inverse;
     return;
   }
-  w.rigid = m.n_s == 0 ? &m : nullptr;
+  if (m.rigid_mass != nullptr) return;
   if (w.stiffening > 0) w.inertia.M.bottomRightCorner(m.n_s, m.n_s) += w.stiffening * m.part->K_s();
-  if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
+  w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
 /// Factors M of part i and records in work.without_inertia whether it has a velocity without inertia.

@@ -152,7 +152,7 @@ PLIANT_INLINE void ModalDeformation::masses(const Part& part, const VecX<double>
     part.evaluate_inertia(q_s, v_r.tail(n_s), omega, w.undeformed, counters);
   } else {
     if (w.undeformed.M.size() == 0) w.undeformed = part.rest_inertia();
-    Part::rigid_force(omega, w.undeformed, counters);
+    Part::rigid_force(w.undeformed, omega, w.undeformed.g_q, counters);
   }
   w.H0 = w.undeformed.M;
   w.moment = w.undeformed.moment;
