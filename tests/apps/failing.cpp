@@ -80,7 +80,7 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   if (step.empty())  // a slow build does not finish the trials in time
     CHECK(has(too_long.err, "they did not finish with"));
   else
-    CHECK(place.pliant(tumbling + step + " --no-strict").code == 0);
+    CHECK(place.pliant(tumbling + step).code == 0);  // its error of the energy balance is at most 1 %
 }
 
 TEST_CASE("limits that contacts press against do not gain energy") {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <deque>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -22,6 +24,10 @@ using Clock = std::chrono::steady_clock;
 constexpr double kShorter = 0.25, kShortest = 1e-3;
 /// Tried tolerances as multiples of the failed one.
 constexpr double kTolerances[] = {0.01, 10, 100};
+/// A trial with a large error of the energy balance is repeated at most this number of times with a shorter
+/// step or a smaller tolerance. The expected error is then kSafety times the largest error without a warning.
+constexpr int kMaxRefinements = 3;
+constexpr double kSafety = 0.3;
 
 /// Settings of a trial run, and how the advice names them.
 struct Trial {
@@ -31,6 +37,14 @@ struct Trial {
 };
 
 enum class Outcome { reaches_end, fails, unfinished };
+
+/// How a trial ended, and the largest error of its energy balance as a share of the energy that could move.
+struct Result {
+  Outcome outcome;
+  double share = 0;
+
+  bool is_accurate() const { return outcome == Outcome::reaches_end && share <= kReportedEnergyShare; }
+};
 
 /// Trial runs of a scene, which end at a common deadline.
 class Trials {
@@ -46,23 +60,26 @@ class Trials {
 
   /// Performs a trial. It has the steps of a run, and examines the energies of the states that the run would
   /// record.
-  Outcome outcome(const Trial& trial) const {
+  Result result(const Trial& trial) const {
     try {
-      Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance);
+      Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance,
+                            [this] { return over(); });
       const FrameSchedule schedule = trial.tolerance > 0
                                          ? FrameSchedule::with_free_steps(scene_.end, scene_.frame_rate)
                                          : FrameSchedule(scene_.end, trial.step, scene_.frame_rate);
       EnergyMonitor monitor(simulation.model());
       monitor.add(simulation.ledger(), 0);
       while (!at_end(simulation, schedule)) {
-        if (over()) return Outcome::unfinished;
+        if (over()) return {Outcome::unfinished};
         if (!scheduled_step(simulation, schedule)) continue;
         monitor.add(simulation.ledger(), simulation.time());
-        if (monitor.share() > kLargestEnergyShare) return Outcome::fails;
+        if (monitor.share() > kLargestEnergyShare) return {Outcome::fails};
       }
-      return Outcome::reaches_end;
+      return {Outcome::reaches_end, monitor.share()};
+    } catch (const ChoiceStopped&) {
+      return {Outcome::unfinished};
     } catch (const std::exception&) {  // the advice never replaces the failure of the run
-      return Outcome::fails;
+      return {Outcome::fails};
     }
   }
 
@@ -73,29 +90,34 @@ class Trials {
   Clock::time_point deadline_;
 };
 
+Trial with_step(const std::string& integrator, double step) {
+  return {integrator, std::stod(rounded_text(step)), 0, "a step of " + rounded_text(step) + " s"};
+}
+
+Trial with_tolerance(const std::string& integrator, double tolerance) {
+  const double exact = std::clamp(tolerance, kMinTolerance, kMaxTolerance);
+  return {integrator, 0, std::stod(rounded_text(exact)), "a tolerance of " + rounded_text(exact)};
+}
+
 /// Returns the trials with shorter fixed steps: first the largest stable step, then fractions of the step.
 std::vector<Trial> shorter_steps(Scene& scene, const FailedRun& failed) {
-  std::vector<double> steps;
-  const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
-  if (stable < failed.step) steps.push_back(stable);
-  for (double h = kShorter * failed.step; h > kShortest * failed.step; h *= kShorter) steps.push_back(h);
   std::vector<Trial> trials;
-  for (const double h : steps)
-    trials.push_back(
-        {failed.integrator, std::stod(rounded_text(h)), 0, "a step of " + rounded_text(h) + " s"});
+  const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
+  if (stable < failed.step) trials.push_back(with_step(failed.integrator, stable));
+  for (double h = kShorter * failed.step; h > kShortest * failed.step; h *= kShorter)
+    trials.push_back(with_step(failed.integrator, h));
   return trials;
 }
 
 std::vector<Trial> other_tolerances(const Scene& scene, const FailedRun& failed) {
   std::vector<Trial> trials;
-  for (const double factor : kTolerances) {
-    const double exact = std::clamp(factor * scene.tolerance, kMinTolerance, kMaxTolerance);
-    trials.push_back(
-        {failed.integrator, 0, std::stod(rounded_text(exact)), "a tolerance of " + rounded_text(exact)});
-  }
+  for (const double factor : kTolerances)
+    trials.push_back(with_tolerance(failed.integrator, factor * scene.tolerance));
   return trials;
 }
 
+/// Returns the trials in their order. The integrator "auto" keeps the tolerance of the scene, as the option
+/// --integrator does.
 std::vector<Trial> trials_for(Scene& scene, const FailedRun& failed) {
   std::vector<Trial> trials;
   try {
@@ -103,8 +125,27 @@ std::vector<Trial> trials_for(Scene& scene, const FailedRun& failed) {
   } catch (const std::exception&) {  // the stable step cannot be computed
   }
   if (failed.step > 0 || failed.integrator != kAutomatic)
-    trials.push_back({kAutomatic, 0, kStandardTolerance, "the integrator auto"});
+    trials.push_back(
+        {kAutomatic, 0, scene.tolerance > 0 ? scene.tolerance : kStandardTolerance, "the integrator auto"});
   return trials;
+}
+
+/// Returns a trial whose error of the energy balance is small, from the share of the error in another trial.
+/// The error is proportional to the tolerance, or to h^p for a method of order p with steps of h seconds.
+Trial refined(const Trial& trial, double share) {
+  const double ratio = kSafety * kReportedEnergyShare / share;
+  if (trial.tolerance > 0) return with_tolerance(trial.integrator, ratio * trial.tolerance);
+  return with_step(trial.integrator,
+                   trial.step * std::pow(ratio, 1.0 / make_integrator(trial.integrator)->order()));
+}
+
+/// The name of a setting that reaches the end, and the error of its energy balance if that is large.
+std::string advice(const Trial& trial, double share) {
+  std::string text = trial.name + " reaches the end of the scene";
+  if (share > kReportedEnergyShare)
+    text += ", but the error of its energy balance is " + rounded_text(100 * share, 2) +
+            " % of the energy that could move";
+  return text;
 }
 
 /// Adds a name to a list with commas.
@@ -117,13 +158,29 @@ void add_name(std::string& list, const std::string& name) {
 std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
                         const std::function<bool()>& stop) {
   const Trials runs(scene, failed.threads, seconds, stop);
-  std::string failing, unfinished;
-  for (const Trial& trial : trials_for(scene, failed)) {
-    if (runs.over()) break;
-    const Outcome outcome = runs.outcome(trial);
-    if (outcome == Outcome::reaches_end) return trial.name + " reaches the end of the scene";
-    add_name(outcome == Outcome::fails ? failing : unfinished, trial.name);
+  std::string failing, unfinished, inaccurate;
+  double least_share = kInfinity;
+  int refinements = 0;
+  const std::vector<Trial> trials = trials_for(scene, failed);
+  std::deque<Trial> left(trials.begin(), trials.end());
+  while (!left.empty() && !runs.over()) {
+    const Trial trial = left.front();
+    left.pop_front();
+    const Result result = runs.result(trial);
+    if (result.is_accurate()) return advice(trial, result.share);
+    if (result.outcome != Outcome::reaches_end) {
+      add_name(result.outcome == Outcome::fails ? failing : unfinished, trial.name);
+      continue;
+    }
+    if (result.share < least_share) {
+      least_share = result.share;
+      inaccurate = advice(trial, result.share);
+    }
+    // The option --tolerance keeps the method of the scene, so that "auto" in its place is not refined.
+    if (trial.integrator == failed.integrator && refinements++ < kMaxRefinements)
+      left.push_front(refined(trial, result.share));
   }
+  if (!inaccurate.empty()) return inaccurate;
   std::string text = "trials of about " + rounded_text(seconds, 2) + " s found no remedy";
   if (!failing.empty()) text += "; they failed with " + failing;
   if (!unfinished.empty()) text += "; they did not finish with " + unfinished;

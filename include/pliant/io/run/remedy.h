@@ -15,12 +15,15 @@ struct FailedRun {
   int threads;
 };
 
-/// Returns the advice "a step of H s reaches the end of the scene", or "a tolerance of E ...", for the first
-/// of the tried values with which a trial reaches scene.end with a valid energy balance (energy_gate.h). The
-/// steps are the largest stable step at the start and fractions of the failed step; the tolerances are
-/// multiples and fractions of the failed tolerance; the last trial is the integrator "auto". Trials take at
-/// most `seconds` of wall time together, and end when stop() returns true. If no trial reaches the end, the
-/// advice lists the settings of the trials. The function catches all exceptions of the trials.
+/// Returns the advice "a step of H s reaches the end of the scene", "a tolerance of E ..." or "the integrator
+/// auto ..." for the first trial that reaches scene.end with an error of the energy balance below
+/// kReportedEnergyShare (energy_gate.h). A run that follows the advice then ends without a warning about this
+/// error. The trials are the largest stable step at the start and fractions of the failed step, or multiples
+/// and fractions of the failed tolerance, and finally the integrator "auto". A trial with a larger error is
+/// repeated with a shorter step or a smaller tolerance. If the errors of all trials are larger, the advice is
+/// the setting with the smallest error, and gives this error. If no trial reaches the end, the advice lists
+/// the settings of the trials. Trials take about `seconds` of wall time together, and end when stop() returns
+/// true. The function catches all exceptions of the trials.
 std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
                         const std::function<bool()>& stop);
 
