@@ -240,6 +240,7 @@ PLIANT_INLINE void Clusters::drop_unused() {
 PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   Simulation& of = *cluster.simulation;
   extract_state(whole_.model_, whole_.state_, of.model_, of.state_);
+  of.interval_ = whole_.interval_;
   of.forget_counters();  // of a simulation of this interval that was not used
   for (const int part : cluster.parts) turned_[at(part)] = 0;
   cluster.done = true;
@@ -326,6 +327,7 @@ PLIANT_INLINE void Simulation::forget_counters() {
 PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
   step_counters_ += cluster.step_counters_;
   absorbed_counters_ += cluster.counters();
+  if (!slow_progress_) slow_progress_ = cluster.slow_progress_;
   cluster.forget_counters();
   for (std::size_t i = 0; i < cluster.work_.without_inertia.size(); ++i) {
     if (cluster.work_.without_inertia[i] == 0) continue;

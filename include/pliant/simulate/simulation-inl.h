@@ -161,10 +161,14 @@ PLIANT_INLINE void Simulation::step(double h) {
     state_.step = 0;
     state_.h = h;
   }
+  interval_ = h;
+  const double start = time();
+  const StepCounters before = step_counters_;
   begin_step();
   if (contact_) contact_->begin_step();
   with_rollback(h, [&] { advance(h); });
   ++state_.step;
+  watch_progress(start, before);
   end_step();
 }
 
@@ -241,6 +245,7 @@ PLIANT_INLINE void Simulation::step_up_to(double until) {
     message << "a step from " << now << " s cannot end at " << until << " s; expected a later, finite time";
     throw std::invalid_argument(message.str());
   }
+  interval_ = until - first_.time();
   const double min_step = simulation::kMinStep * std::max(std::abs(now), std::abs(until));
   const std::vector<double>& times = model_.switch_times();
   const auto next = std::upper_bound(times.begin(), times.end(), now + min_step);
@@ -278,9 +283,37 @@ PLIANT_INLINE void Simulation::controlled_step(double end) {
     state_.h = first_step(begin, *scale_, integrator_->error_order());
   }
   const double min_step = simulation::kMinStep * std::max(std::abs(time()), std::abs(end));
+  const double start = time();
+  const StepCounters before = step_counters_;
   const bool done = take_controlled_step(state_, end, min_step, growth_of(*integrator_, model_),
                                          step_counters_, [&] { return try_step(); });
   if (!done) with_rollback(state_.h, [&] { fail_to_meet_tolerance(); });
+  watch_progress(start, before);
+}
+
+/// Includes an accepted step in the watch. start: time at the start of the step, s. before: the counters
+/// there. Throws NumericalFailure if the steps of a window are as short as the shortest possible step in the
+/// mean.
+PLIANT_INLINE void Simulation::watch_progress(double start, const StepCounters& before) {
+  StepCounters work;
+  work.rejected = step_counters_.rejected - before.rejected;
+  work.impacts = step_counters_.impacts - before.impacts;
+  work.evaluations = step_counters_.evaluations - before.evaluations;
+  std::optional<SlowProgress> slow = watch_.add(start, time(), interval_, work);
+  if (!slow) return;
+  const VecX<double> none = VecX<double>::Zero(state_.q.size());
+  const ErrorScale scale = scale_ ? *scale_ : ErrorScale(model_, kStandardTolerance);
+  slow->fastest = scale.worst(none, state_.v - last_good_.v, state_.v);
+  if (!slow_progress_) slow_progress_ = slow;
+  if (slow->steps < ProgressWatch::kWindow ||
+      slow->advance > static_cast<double>(slow->steps) * simulation::kMinStep * std::abs(time()))
+    return;
+  std::ostringstream message;
+  message << slow->steps << " steps have advanced by " << slow->advance << " s only, with " << slow->impacts
+          << " impacts; " << slow->fastest
+          << " changes most: expected a motion without impacts that follow each other ever faster, or steps "
+             "of fixed length";
+  with_rollback(state_.h, [&] { throw NumericalFailure(message.str(), last_good_.time()); });
 }
 
 /// Stages 3 to 5 with a tolerance: advances all clusters to the time `end`, s.

@@ -15,6 +15,7 @@
 #include <pliant/project/assemble.h>
 #include <pliant/project/joint_switching.h>
 #include <pliant/simulate/choose_integrator.h>
+#include <pliant/simulate/progress_watch.h>
 #include <pliant/simulate/step_length.h>
 
 namespace pliant {
@@ -80,6 +81,10 @@ class Simulation {
   /// Returns the clusters (simulate/clusters.h); nullptr if all parts step together.
   const Clusters* clusters() const { return clusters_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
+  /// Returns the first steps that hardly advanced (ProgressWatch); none if there were no such steps. The
+  /// interval of the watch is a step of fixed length. With a tolerance it is the time from the first state,
+  /// or from that of the last set_state(), to the end of the last step_up_to().
+  const std::optional<SlowProgress>& slow_progress() const { return slow_progress_; }
   /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
   /// the order of time. Impulses as small as rounding errors are omitted.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
@@ -105,6 +110,7 @@ class Simulation {
   StepError try_step();
   void estimate_contact_error(const StepCounters& before, StepError& result);
   void fail_to_meet_tolerance();
+  void watch_progress(double start, const StepCounters& before);
   bool shorter_steps_pass(double h);
   void begin_step();
   void reject_step();
@@ -131,6 +137,9 @@ class Simulation {
   State first_;  ///< the state at the start, or that of the last set_state()
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
+  ProgressWatch watch_;
+  double interval_ = 0;  ///< interval of the watch, s
+  std::optional<SlowProgress> slow_progress_;
   AssemblyReport assembly_;
   std::vector<bool> without_inertia_;  ///< whether each velocity had no inertia in at least one step
   Counters absorbed_counters_;         ///< evaluations of clusters

@@ -15,6 +15,7 @@
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/run/scheduled_step.h>
 #include <pliant/io/run/skipped.h>
+#include <pliant/io/run/slow_note.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/io/trajectory.h>
 #include <pliant/part/mesh/surface_turn.h>
@@ -183,6 +184,13 @@ void Run::note_turns() {
               " rad; use a law that is valid for all rotations (neo_hookean, st_venant_kirchhoff, corotated, "
               "neo_hookean_membrane, st_venant_kirchhoff_membrane)");
   }
+}
+
+/// Adds a note, once, if the simulation has hardly advanced.
+void Run::note_slow_progress() {
+  if (!simulation_->slow_progress()) return;
+  const std::vector<std::string>& notes = record_.notes;
+  if (std::none_of(notes.begin(), notes.end(), is_slow_progress_note)) note(slow_progress_note(*simulation_));
 }
 
 /// Adds a note, once, if a visible part is below the drawn ground.
@@ -393,6 +401,7 @@ void Run::step_to_end() {
       break;
     }
     const bool records = scheduled_step(*simulation_, schedule_);
+    note_slow_progress();
     progress_->advance(simulation_->time() - first_time);
     if (records) record_state();
     const WallClock::time_point now = WallClock::now();

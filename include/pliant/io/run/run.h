@@ -130,6 +130,7 @@ class Run {
   void note_engagements();
   void note_turns();
   void note_ground();
+  void note_slow_progress();
   void note_violations();
   void note_energy_balance();
   void note_uncontrolled_steps();
