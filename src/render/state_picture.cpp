@@ -114,6 +114,11 @@ void StatePicture::draw_connectors(const State& state) {
   }
 }
 
+void StatePicture::color_again() {
+  meshes_ = FrameMeshes(*scene_, *model_);
+  picture_.scale.reset();
+}
+
 void StatePicture::set(const State& state) {
   bodies_ = &meshes_.at(state);
   picture_.bodies.clear();

@@ -36,9 +36,57 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
     rate_ = 1 / (static_cast<double>(steps_) * scene.step);
   }
   scene.body.stop_rate = rate_;
+  free_rest_values();
   if (scene.integrator == kAutomatic)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
+}
+
+/// Makes the rest values that the user can change functions of time.
+void LiveSimulation::free_rest_values() {
+  for (const auto& part : scene_->body.parts()) {
+    if (part->fixed() || part->continuum() != nullptr) continue;
+    part->prepare();
+    const Parameters& parameters = part->parameters();
+    std::vector<RestValue> found;
+    for (int k = 0; k < parameters.n_dynamic(); ++k) {
+      const Parameter& parameter = parameters.moving(k);
+      if (!parameter.rest.is_constant() || part->K_s().row(k).isZero(0)) continue;
+      const double value = parameter.rest_value();
+      found.push_back({part.get(), parameter.name, parameter.spec->frozen, value,
+                       std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{value}),
+                       value});
+    }
+    for (const RestValue& rest : found) part->rest(rest.parameter, TimeFunction(rest.path));
+    rest_values_.insert(rest_values_.end(), found.begin(), found.end());
+  }
+}
+
+void LiveSimulation::set_rest_value(std::size_t i, double value) {
+  RestValue& rest = rest_values_.at(i);
+  if (!rest.range.contains(value))
+    throw std::invalid_argument("the rest value " + std::to_string(value) + " of " + rest.part->name() + "." +
+                                rest.parameter + " is out of range");
+  rest.next = value;
+}
+
+/// Adds the keys of the next interval, from `now` to `next` (s), to the paths that change.
+void LiveSimulation::extend_paths(double now, double next) {
+  for (Drag& drag : drags_) {
+    if (std::isfinite(drag.spring->off)) continue;
+    drag.path.append(next, drag.target);
+    if (drag.ends) drag.spring->off = next;
+  }
+  if (gravity_ && next_gravity_ != gravity_->last()) {
+    if (gravity_->last_time() < now) gravity_->append(now, gravity_->last());
+    gravity_->append(next, next_gravity_);
+  }
+  for (RestValue& rest : rest_values_) {
+    const double last = rest.path->values().back();
+    if (rest.next == last) continue;
+    if (rest.path->times().back() < now) rest.path->append(now, last);
+    rest.path->append(next, rest.next);
+  }
 }
 
 void LiveSimulation::rebuild() {
@@ -51,22 +99,14 @@ void LiveSimulation::reset() {
   drags_.clear();
   if (gravity_) scene_->body.changing_gravity.reset();
   gravity_.reset();
+  for (RestValue& rest : rest_values_) rest.path->restart(0, rest.next = rest.first);
   intervals_ = 0;
   rebuild();
 }
 
 void LiveSimulation::advance() {
   const double next = time_after(intervals_ + 1);
-  for (Drag& drag : drags_) {
-    if (std::isfinite(drag.spring->off)) continue;
-    drag.path.append(next, drag.target);
-    if (drag.ends) drag.spring->off = next;
-  }
-  if (gravity_ && next_gravity_ != gravity_->last()) {
-    const double now = time_after(intervals_);
-    if (gravity_->last_time() < now) gravity_->append(now, gravity_->last());
-    gravity_->append(next, next_gravity_);
-  }
+  extend_paths(time_after(intervals_), next);
   if (steps_ > 0)
     for (std::int64_t i = 0; i < steps_; ++i) simulation_->step(scene_->step);
   else

@@ -45,6 +45,17 @@ Json spring_of(const Drag& drag) {
   return json;
 }
 
+/// Writes the rest values that the user has changed into the parts of the document.
+void set_rest_values(Json& document, const LiveSimulation& simulation) {
+  for (const RestValue& rest : simulation.rest_values()) {
+    if (rest.path->times().size() == 1) continue;
+    const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
+    Json& parameter = document["parts"][number]["parameters"][rest.parameter];
+    if (!parameter.is_object()) parameter = Json::object();
+    parameter["rest"] = {{"t", rest.path->times()}, {"y", rest.path->values()}, {"interpolation", "linear"}};
+  }
+}
+
 /// Makes the paths of mesh files relative to another folder.
 void move_meshes(Json& document, const std::filesystem::path& from, const std::filesystem::path& to) {
   if (!document.contains("contact") || !document["contact"].contains("obstacles")) return;
@@ -75,6 +86,7 @@ std::string saved_scene(const LiveSimulation& simulation, const std::filesystem:
   document["output"]["frame_rate"] = simulation.rate();
   for (const Drag& drag : simulation.drags()) document["springs"].push_back(spring_of(drag));
   if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
+  set_rest_values(document, simulation);
   move_meshes(document, scene_folder, folder);
   return document.dump(1) + "\n";
 }

@@ -206,6 +206,17 @@ TEST_CASE("changed gravity is repeated to the last bit") {
   });
 }
 
+TEST_CASE("changed rest values are repeated to the last bit") {
+  check_replay(kBar, 60, [](LiveSimulation& live, int k) {
+    REQUIRE(live.rest_values().size() == 1);
+    CHECK(live.rest_values()[0].parameter == "bend.angle");
+    if (k == 10) live.set_rest_value(0, 0.6);
+    if (k == 40) live.set_rest_value(0, -0.2);
+    CHECK_THROWS_WITH(live.set_rest_value(0, 1e6), test::has_text("out of range"));
+    drag(live, "bar", k);
+  });
+}
+
 TEST_CASE("a reset simulation repeats its first motion") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
   LiveSimulation live(*scene);

@@ -23,6 +23,8 @@ class StatePicture {
 
   /// Sets the bodies of the picture; its tracks are then the lines and dots of springs and joints.
   void set(const State& state);
+  /// Makes the meshes again, after Scene::coloring has changed. The picture then has no scale.
+  void color_again();
   /// The picture. The caller may change its camera, ground, scale and tracks. Its bodies refer to this
   /// object.
   Picture& picture() { return picture_; }

@@ -33,6 +33,16 @@ struct Drag {
   bool ends = false;     ///< whether the drag ends at the end of the next interval
 };
 
+/// A rest value of a dynamic parameter that the user can change.
+struct RestValue {
+  const Part* part;
+  std::string parameter;
+  Range range;                       ///< allowed values
+  double first;                      ///< value in the scene
+  std::shared_ptr<LinearKeys> path;  ///< the values so far
+  double next;                       ///< value at the end of the next interval
+};
+
 /// Advances a scene by intervals of equal length, 1 / rate(). All actions of the user take effect between two
 /// intervals, so that the motion can be repeated to the last bit (save_scene.h).
 class LiveSimulation {
@@ -71,12 +81,21 @@ class LiveSimulation {
   /// gravity of the scene changes in time.
   void set_gravity(const Vec3<double>& gravity);
 
+  /// The rest values of moving parts that are constant in the scene and have a stiffness. Their order does
+  /// not change.
+  const std::vector<RestValue>& rest_values() const { return rest_values_; }
+  /// Changes a rest value linearly within the next interval. i: its number in rest_values(); value: m, rad
+  /// or 1. Throws std::invalid_argument for a value out of range.
+  void set_rest_value(std::size_t i, double value);
+
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
   /// The path of gravity; nullptr if the user has not changed it.
   const GrowingPath* gravity() const { return gravity_.get(); }
 
  private:
+  void free_rest_values();
+  void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);
   std::string new_name() const;
@@ -89,6 +108,7 @@ class LiveSimulation {
   std::int64_t intervals_ = 0;
   std::vector<Drag> drags_;
   std::unique_ptr<GrowingPath> gravity_;
+  std::vector<RestValue> rest_values_;
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };
 

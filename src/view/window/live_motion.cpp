@@ -37,32 +37,22 @@ int threads_of(Scene& scene, int asked) {
 LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
     : scene_(&scene),
       options_(options),
+      run_(scene, 60, threads_of(scene, options.threads)),
       model_(scene.body),
       points_(scene, model_),
-      run_(scene, 60, threads_of(scene, options.threads)),
+      shown_(scene, model_),
       snapshot_(run_.snapshot()),
-      gravity_is_free_(!scene.body.changing_gravity) {
-  for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(scene.body.gravity_at(0)[i]);
-  make_picture();
+      gravity_is_free_(!scene.body.changing_gravity),
+      first_gravity_(scene.body.gravity_at(0)) {
+  for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
+  run_.wait_for([&](LiveSimulation& simulation) { rest_values_ = simulation.rest_values(); });
+  shown_.set(snapshot_->state);
   const State& state = snapshot_->state;
-  Eigen::AlignedBox3d bodies = shown_->bounds(state), all = bodies;
-  shown_->extend_to_anchors(state.time(), bodies, all);
+  Eigen::AlignedBox3d bodies = shown_.bounds(state), all = bodies;
+  shown_.extend_to_anchors(state.time(), bodies, all);
   if (!all.isEmpty()) size_ = all.diagonal().norm();
-  shown_->set_view(bodies, all, static_cast<double>(options.width) / options.height);
-  if (!scene.camera.eye) zoom(shown_->picture().camera, 1 / kFarther);
-}
-
-/// Makes the picture for the present colours.
-void LiveMotion::make_picture() {
-  auto made = std::make_unique<StatePicture>(*scene_, model_);
-  if (shown_) {
-    made->picture().camera = shown_->picture().camera;
-    made->picture().ground = shown_->picture().ground;
-    made->picture().edges = shown_->picture().edges;
-    made->shows_connectors = shown_->shows_connectors;
-  }
-  shown_ = std::move(made);
-  show_again();
+  shown_.set_view(bodies, all, static_cast<double>(options.width) / options.height);
+  if (!scene.camera.eye) zoom(shown_.picture().camera, 1 / kFarther);
 }
 
 bool LiveMotion::refresh() {
@@ -75,10 +65,10 @@ bool LiveMotion::refresh() {
 }
 
 void LiveMotion::show_again() {
-  shown_->set(snapshot_->state);
+  shown_.set(snapshot_->state);
   if (scene_->coloring) {
-    highest_ = std::max(highest_, shown_->meshes().high_value(snapshot_->state).value_or(0));
-    shown_->set_scale(highest_);
+    highest_ = std::max(highest_, shown_.meshes().high_value(snapshot_->state).value_or(0));
+    shown_.set_scale(highest_);
   }
   add_forces(snapshot_->contacts, kContactColor);
   add_forces(snapshot_->joints, kJointColor);
@@ -98,7 +88,7 @@ void LiveMotion::add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vect
   track.points = std::move(points);
   track.color = color;
   track.width = width;
-  shown_->picture().tracks.push_back(std::move(track));
+  shown_.picture().tracks.push_back(std::move(track));
 }
 
 /// Adds a line for each force, with a dot at its point. The largest force so far is a quarter of the scene
@@ -123,6 +113,8 @@ void LiveMotion::step() {
 
 void LiveMotion::reset() {
   run_.reset();
+  for (RestValue& rest : rest_values_) rest.next = rest.first;
+  for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
 }
 
 void LiveMotion::color_by_strain(bool on) {
@@ -131,7 +123,9 @@ void LiveMotion::color_by_strain(bool on) {
   else
     scene_->coloring.reset();
   highest_ = 0;
-  make_picture();
+  // The rest values of the parts must not change meanwhile.
+  run_.wait_for([&](LiveSimulation&) { shown_.color_again(); });
+  show_again();
 }
 
 std::optional<std::string> LiveMotion::grab(const Hit& hit) {
@@ -165,7 +159,7 @@ std::string LiveMotion::save() {
   return "saved in " + options_.saved.string();
 }
 
-void LiveMotion::add_to_panel() {
+void LiveMotion::add_to_panel(const std::string& selected) {
   const Snapshot& now = *snapshot_;
   ImGui::Text("t = %.3f s", now.state.time());
   if (now.running)
@@ -181,6 +175,7 @@ void LiveMotion::add_to_panel() {
     const Vec3<double> wanted(gravity_[0], gravity_[1], gravity_[2]);
     run_.post([wanted](LiveSimulation& simulation) { simulation.set_gravity(wanted); });
   }
+  add_rest_values(selected);
   ImGui::PopItemWidth();
   ImGui::TextUnformatted("forces of");
   bool changed = ImGui::Checkbox("contacts", &forces_.contacts);
@@ -199,6 +194,21 @@ void LiveMotion::add_to_panel() {
   ImGui::Text("balance %.2g J", ledger.balance);
   if (!now.failure.empty()) ImGui::TextWrapped("%s", now.failure.c_str());
   if (!now.refusal.empty()) ImGui::TextWrapped("%s", now.refusal.c_str());
+}
+
+/// Adds a slider for each rest value of a part, from 0.3 to 2 times its first value, or from -1 to 1.
+void LiveMotion::add_rest_values(const std::string& part) {
+  for (std::size_t i = 0; i < rest_values_.size(); ++i) {
+    RestValue& rest = rest_values_[i];
+    if (rest.part->name() != part) continue;
+    const double a = rest.first != 0 ? 0.3 * rest.first : -1, b = rest.first != 0 ? 2 * rest.first : 1;
+    const auto low = static_cast<float>(std::clamp(std::min(a, b), rest.range.min, rest.range.max)),
+               high = static_cast<float>(std::clamp(std::max(a, b), rest.range.min, rest.range.max));
+    auto value = static_cast<float>(rest.next);
+    if (!ImGui::SliderFloat(rest.parameter.c_str(), &value, low, high, "%.3f")) continue;
+    rest.next = std::clamp<double>(value, rest.range.min, rest.range.max);
+    run_.post([i, wanted = rest.next](LiveSimulation& simulation) { simulation.set_rest_value(i, wanted); });
+  }
 }
 
 void LiveMotion::report(std::ostream& out) const {

@@ -38,8 +38,9 @@ class Motion {
   /// Writes the scene with the actions of the user. Returns a text for the user.
   virtual std::string save() = 0;
 
-  /// Adds the controls and values of this kind of motion to the panel of the window.
-  virtual void add_to_panel() = 0;
+  /// Adds the controls and values of this kind of motion to the panel of the window. selected: the name of
+  /// the part that was clicked last.
+  virtual void add_to_panel(const std::string& selected) = 0;
   /// Prints the state of a drag, and the simulated time divided by wall time, for scripts and benches.
   virtual void report(std::ostream& out) const = 0;
 };

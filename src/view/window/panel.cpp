@@ -28,7 +28,7 @@ void Viewer::add_panel() {
   if (ImGui::Button("reset")) motion_.reset();
   ImGui::SameLine();
   if (ImGui::Button("save")) message_ = motion_.save();
-  motion_.add_to_panel();
+  motion_.add_to_panel(selected_);
   ImGui::Separator();
   if (ImGui::Checkbox("strain colours", &by_strain_)) {
     motion_.color_by_strain(by_strain_);

@@ -67,7 +67,7 @@ std::optional<std::string> RecordedMotion::grab(const Hit& hit) {
   return {};
 }
 
-void RecordedMotion::add_to_panel() {
+void RecordedMotion::add_to_panel(const std::string&) {
   auto time = static_cast<float>(time_);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderFloat("##time", &time, static_cast<float>(first_), static_cast<float>(last_),

@@ -26,7 +26,7 @@ class RecordedMotion final : public Motion {
   void drag_to(const Vec3<double>&) override {}
   void release() override {}
   std::string save() override { return "a recording is saved already"; }
-  void add_to_panel() override;
+  void add_to_panel(const std::string& selected) override;
   void report(std::ostream& out) const override;
 
  private:

@@ -29,6 +29,11 @@ class LinearKeys final : public TimeFunction::Impl {
     t_.push_back(t);
     y_.push_back(y);
   }
+  /// Replaces all keys by one. No other thread may use the function during the call.
+  void restart(double t, double y) {
+    t_.assign(1, t);
+    y_.assign(1, y);
+  }
   const std::vector<double>& times() const { return t_; }  ///< s
   const std::vector<double>& values() const { return y_; }
 
