@@ -24,5 +24,6 @@ void add_export(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_view(CLI::App& app, Action& action);
 
 }  // namespace pliant_cli

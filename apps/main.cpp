@@ -34,6 +34,7 @@ int run_command(int argc, char** argv) {
   pliant_cli::add_check(app, action);
   pliant_cli::add_info(app, action);
   pliant_cli::add_list(app, action);
+  pliant_cli::add_view(app, action);
   pliant_cli::add_render(app, action);
   pliant_cli::add_export(app, action);
   pliant_cli::add_verify(app, action);

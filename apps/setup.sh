@@ -12,9 +12,11 @@ pliant_minutes_tests=10
 # has no package a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev zlib1g-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
-# Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, and Python for
-# the tests package/scene_keys and package/house.
-pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev"
+# The window of `pliant view` needs these packages; without them the program is built without a window.
+pliant_window_packages="libglfw3-dev libimgui-dev"
+# Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, Python for
+# the tests package/scene_keys and package/house, and a virtual display with synthetic inputs for tests of the window.
+pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xauth xdotool"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 

@@ -13,6 +13,7 @@
 #include <pliant/io/format/whole_file.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/render/gl/gl_context.h>
+#include <pliant/view/viewer.h>
 
 #include "command.h"
 #include "exit_codes.h"
@@ -39,6 +40,14 @@ void print_graphics() {
                  "of them\n";
 }
 
+void print_window() {
+  const std::string missing = pliant::missing_window_packages();
+  std::cout << "window\n  pliant view: "
+            << (missing.empty() ? std::string("built in")
+                                : "not built in; install " + missing + ", configure again and build")
+            << "\n";
+}
+
 // Writes a temporary file of 64 MiB to a folder and waits until its bytes are on the disk. Returns the speed,
 // MB/s.
 double write_speed(const fs::path& folder) {
@@ -63,6 +72,7 @@ int examine(const fs::path& folder) {
             << " threads; features: " << (features.empty() ? "unknown" : features)
             << "\n  BLAS loaded: " << loaded_blas() << "\n";
   print_graphics();
+  print_window();
   const std::string ffmpeg = find_program("ffmpeg");
   std::cout << "films\n  ffmpeg: "
             << (ffmpeg.empty() ? "not installed (needed only to make films from frames)" : ffmpeg) << "\n";

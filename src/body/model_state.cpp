@@ -108,6 +108,18 @@ Nodes Model::node_positions(const State& state, int part) const {
          m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s);
 }
 
+double Model::energy(const SpringModel& spring, const State& state) const {
+  auto position_of = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
+    if (ref.part < 0) return point.world.value(state.time());
+    const PartModel& of = parts_[static_cast<std::size_t>(ref.part)];
+    return world_point(
+        state, ref.part, point.material,
+        of.local == nullptr ? NodeWeights() : of.node_weights[static_cast<std::size_t>(ref.port)]);
+  };
+  return spring.spring->energy(position_of(spring.a, spring.spring->a),
+                               position_of(spring.b, spring.spring->b));
+}
+
 double Model::gap(const State& state, int joint) const {
   const JointModel& m = joints_[static_cast<std::size_t>(joint)];
   std::array<Vec3<double>, kMaxJointPoints> x;

@@ -59,7 +59,7 @@ endfunction()
 # version files, pliant.pc.
 function(pliant_install_package)
   set(not_built "")
-  foreach(folder scene io render)
+  foreach(folder scene io render view)
     if(NOT TARGET pliant_${folder})
       list(APPEND not_built PATTERN pliant/${folder} EXCLUDE)
     endif()
@@ -71,7 +71,7 @@ function(pliant_install_package)
                                 INSTALL_DESTINATION ${PLIANT_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
   write_basic_package_version_file(${build}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${build}/pliant-config.cmake ${build}/pliant-config-version.cmake
-                ${PROJECT_SOURCE_DIR}/src/cmake/FindCHOLMOD.cmake
+                ${PROJECT_SOURCE_DIR}/src/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/src/cmake/FindImGui.cmake
           DESTINATION ${PLIANT_PACKAGE_DIR})
 
   _pliant_write_pkg_config(${build}/pliant.pc)

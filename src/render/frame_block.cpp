@@ -169,8 +169,8 @@ void check_settings(const Picture& picture, const Vector3d& eye) {
 
 }  // namespace
 
-FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& boxes, int samples_wide,
-                       int samples_high, int shadow_side, int contact_side) {
+FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& boxes,
+                       const PassSizes& sizes) {
   const Camera& camera = picture.camera;
   const Picture::Ground& floor = picture.ground;
   const Picture::Lights& lights = picture.lights;
@@ -179,7 +179,7 @@ FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& 
   check_settings(picture, eye);
 
   FrameBlock frame;
-  const double aspect = static_cast<double>(samples_wide) / samples_high;
+  const double aspect = static_cast<double>(sizes.width) / sizes.height;
   frame.view_projection = view_projection(camera, aspect).cast<float>();
   frame.eye = with(eye.cast<float>(), static_cast<float>(kNear * distance));
   frame.to_key = with(lights.to_key.normalized(), 0);
@@ -205,10 +205,11 @@ FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& 
     radius = std::max<double>(radius, box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).head<2>().norm());
   const double outer = std::max(3.4 * distance, std::min(1.5 * radius, kShadowReach * distance));
   frame.fade << static_cast<float>(0.22 * outer), static_cast<float>(outer), 0, 0;
-  frame.viewport << static_cast<float>(samples_wide), static_cast<float>(samples_high),
-      1.0f / static_cast<float>(shadow_side), 0;
-  fit_shadow(frame, boxes, distance, shadow_side);
-  fit_contact(frame, boxes, distance, contact_side);
+  const auto samples = static_cast<float>(sizes.samples);
+  frame.viewport << samples * static_cast<float>(sizes.width), samples * static_cast<float>(sizes.height),
+      1.0f / static_cast<float>(sizes.shadow_side), 0.5f * samples;
+  fit_shadow(frame, boxes, distance, sizes.shadow_side);
+  fit_contact(frame, boxes, distance, sizes.contact_side);
   return frame;
 }
 

@@ -10,6 +10,13 @@
 
 namespace pliant {
 
+/// The sizes of the targets of the passes of a picture.
+struct PassSizes {
+  int width = 0, height = 0;                   ///< of the picture, pixels
+  int samples = 2;                             ///< samples of a pixel along each axis: 1 or 2
+  int shadow_side = 2048, contact_side = 128;  ///< of the square maps, texels
+};
+
 struct FrameBlock {
   Eigen::Matrix4f view_projection;  ///< to clip space, far plane at infinity
   Eigen::Matrix4f shadow;   ///< to [0, 1]^3: position on the shadow map, and depth along the key light
@@ -27,13 +34,13 @@ struct FrameBlock {
   Eigen::Vector4f grid;  ///< x y: position of the target, in cells from a strong line; z: size of a cell, m
   Eigen::Vector4f fade;  ///< x y: radii between which the ground fades, m; z: texel of the contact map, m; w:
                          ///< height of the contact map, m
-  Eigen::Vector4f viewport;  ///< x y: size in samples; z: texel of the shadow map, as a share of the map
+  Eigen::Vector4f viewport;  ///< x y: size in samples; z: texel of the shadow map, as a share of the map; w:
+                             ///< half the samples of a pixel along an axis
 };
 
 /// Returns the block for a picture. boxes: bounding boxes of the bodies, relative to the target of the camera
-/// (m); samples_wide, samples_high: size of the picture in samples; shadow_side, contact_side: sizes of the
-/// maps in texels. Throws std::invalid_argument that names the setting that is out of range.
+/// (m). Throws std::invalid_argument that names the setting that is out of range.
 FrameBlock frame_block(const Picture& picture, const std::vector<Eigen::AlignedBox3f>& boxes,
-                       int samples_wide, int samples_high, int shadow_side, int contact_side);
+                       const PassSizes& sizes);
 
 }  // namespace pliant

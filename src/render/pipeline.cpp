@@ -8,6 +8,7 @@
 #include <string>
 
 #include <pliant/render/color_map.h>
+#include <pliant/render/renderer.h>
 
 #include "color_bar.h"
 #include "render/gl/shaders.h"
@@ -17,8 +18,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kShadowSide = 2048, kContactSide = 128;
-constexpr gl::Int kShadowUnit = 0, kContactUnit = 1;
+constexpr gl::Int kShadowUnit = 0, kContactUnit = 1, kSamplesUnit = 2;
 
 Eigen::Vector3f linear(const Eigen::Vector3f& srgb) {
   return srgb.unaryExpr(&linear_light);
@@ -54,10 +54,25 @@ MapTarget::MapTarget(const gl::Functions& gl, gl::Enum format, int side) : textu
   }
 }
 
-Pipeline::Pipeline(const GlContext& context, int width, int height)
+PassSizes pass_sizes(int width, int height) {
+  const auto check = [](int side, const char* name) {
+    if (side < 1 || side > Renderer::kMaxSide)
+      throw std::invalid_argument(std::string("picture: the ") + name + " of " + std::to_string(side) +
+                                  " pixels is not in [1, " + std::to_string(Renderer::kMaxSide) + "]");
+  };
+  check(width, "width");
+  check(height, "height");
+  PassSizes sizes;
+  sizes.width = width;
+  sizes.height = height;
+  return sizes;
+}
+
+Pipeline::Pipeline(const GlContext& context, const PassSizes& sizes)
     : gl_(context),
-      width_(width),
-      height_(height),
+      sizes_(sizes),
+      samples_wide_(sizes.samples * sizes.width),
+      samples_high_(sizes.samples * sizes.height),
       shadow_program_(gl_, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
       height_program_(gl_, "height", shaders::kHeightVertex, shaders::kDepthFragment),
       contact_program_(gl_, "contact", shaders::kContactVertex, shaders::kContactFragment),
@@ -65,9 +80,9 @@ Pipeline::Pipeline(const GlContext& context, int width, int height)
       ground_program_(gl_, "ground", shaders::kGroundVertex, shaders::kGroundFragment),
       background_program_(gl_, "background", shaders::kBackgroundVertex, shaders::kBackgroundFragment),
       track_program_(gl_, "track", shaders::kTrackVertex, shaders::kTrackFragment),
-      shadow_(gl_, gl::kDepthComponent24, kShadowSide),
-      heights_(gl_, gl::kDepthComponent16, kContactSide),
-      contact_(gl_, gl::kR8, kContactSide),
+      shadow_(gl_, gl::kDepthComponent24, sizes.shadow_side),
+      heights_(gl_, gl::kDepthComponent16, sizes.contact_side),
+      contact_(gl_, gl::kR8, sizes.contact_side),
       target_(gl_),
       color_(gl_),
       depth_(gl_),
@@ -93,24 +108,25 @@ Pipeline::Pipeline(const GlContext& context, int width, int height)
   gl_.enable(gl::kCullFace);
   gl_.depth_func(gl::kLessEqual);
   gl_.blend_func(gl::kSourceAlpha, gl::kOneMinusSourceAlpha);
-  samples_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 16);
 }
 
 void Pipeline::check_target() {
   gl::Int largest = 0;
   gl_.get_integer(gl::kMaxTextureSize, &largest);
-  const int wide = 2 * width_, high = 2 * height_;
-  const std::string size = std::to_string(width_) + " x " + std::to_string(height_);
-  if (wide > largest || high > largest)
+  const std::string size = std::to_string(sizes_.width) + " x " + std::to_string(sizes_.height);
+  if (samples_wide_ > largest || samples_high_ > largest)
     throw std::runtime_error("a picture of " + size +
                              " pixels is too large for this OpenGL; the largest side is " +
-                             std::to_string(largest / 2) + " pixels");
-  gl_.bind_renderbuffer(gl::kRenderbuffer, color_.name());
-  gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kRgba8, wide, high);
+                             std::to_string(largest / sizes_.samples) + " pixels");
+  gl_.bind_texture(gl::kTexture2d, color_.name());
+  gl_.tex_image_2d(gl::kTexture2d, 0, static_cast<gl::Int>(gl::kRgba8), samples_wide_, samples_high_, 0,
+                   gl::kRgba, gl::kUnsignedByte, nullptr);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMinFilter, gl::kNearest);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMagFilter, gl::kNearest);
   gl_.bind_renderbuffer(gl::kRenderbuffer, depth_.name());
-  gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kDepthComponent24, wide, high);
+  gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kDepthComponent24, samples_wide_, samples_high_);
   gl_.bind_framebuffer(gl::kFramebuffer, target_.name());
-  gl_.framebuffer_renderbuffer(gl::kFramebuffer, gl::kColorAttachment0, gl::kRenderbuffer, color_.name());
+  gl_.framebuffer_texture_2d(gl::kFramebuffer, gl::kColorAttachment0, gl::kTexture2d, color_.name(), 0);
   gl_.framebuffer_renderbuffer(gl::kFramebuffer, gl::kDepthAttachment, gl::kRenderbuffer, depth_.name());
   for (const gl::Uint framebuffer : {target_.name(), shadow_.framebuffer.name(), heights_.framebuffer.name(),
                                      contact_.framebuffer.name()}) {
@@ -139,7 +155,7 @@ void Pipeline::draw_triangle() {
 void Pipeline::draw_contact(bool bodies) {
   gl_.active_texture(gl::kTexture0 + kContactUnit);
   gl_.enable(gl::kDepthClamp);
-  draw_depth(heights_, kContactSide, height_program_, bodies);
+  draw_depth(heights_, sizes_.contact_side, height_program_, bodies);
   gl_.disable(gl::kDepthClamp);
   gl_.disable(gl::kDepthTest);
   gl_.bind_framebuffer(gl::kFramebuffer, contact_.framebuffer.name());
@@ -176,6 +192,21 @@ void Pipeline::draw_bodies(const Picture& picture) {
     if (leveled(picture.bodies[i])) draw_body(i);
 }
 
+// Draws the edges of all triangles, slightly nearer to the eye than the surfaces.
+void Pipeline::draw_edges() {
+  if (meshes_.index_count() == 0) return;
+  constexpr float kNearer = -1;  // in units of the depth of the framebuffer and of the slope
+  body_program_.use();
+  gl_.uniform_3f(body_program_.uniform("own_color"), 0.02f, 0.02f, 0.03f);
+  meshes_.bind();
+  gl_.polygon_mode(gl::kFrontAndBack, gl::kLine);
+  gl_.polygon_offset(kNearer, kNearer);
+  gl_.enable(gl::kPolygonOffsetLine);
+  gl_.draw_elements(gl::kTriangles, meshes_.index_count(), gl::kUnsignedInt, nullptr);
+  gl_.disable(gl::kPolygonOffsetLine);
+  gl_.polygon_mode(gl::kFrontAndBack, gl::kFill);
+}
+
 void Pipeline::draw_body(std::size_t body) {
   const MeshBatch::Range& range = meshes_.ranges()[body];
   gl_.draw_elements(
@@ -193,7 +224,8 @@ void Pipeline::draw_tracks(const Picture& picture) {
     const Eigen::Vector3f color = linear(picture.tracks[i].color);
     if (range.segments == 0) continue;
     gl_.uniform_3f(track_program_.uniform("color"), color[0], color[1], color[2]);
-    gl_.uniform_1f(track_program_.uniform("half_width"), picture.tracks[i].width);
+    gl_.uniform_1f(track_program_.uniform("half_width"),
+                   0.5f * static_cast<float>(sizes_.samples) * picture.tracks[i].width);
     tracks_.bind(range);
     gl_.draw_arrays_instanced(gl::kTriangleStrip, 0, 4, range.segments);
   }
@@ -201,15 +233,14 @@ void Pipeline::draw_tracks(const Picture& picture) {
   gl_.disable(gl::kBlend);
 }
 
-Image Pipeline::draw(const Picture& picture) {
+void Pipeline::draw_samples(const Picture& picture) {
   check_colors(picture.bodies, "body");
   check_colors(picture.tracks, "track");
   if (picture.scale &&
       !(std::isfinite(picture.scale->high - picture.scale->low) && picture.scale->low < picture.scale->high))
     throw std::invalid_argument("picture: the scale of values must go from a finite number to a larger one");
   meshes_.update(picture);
-  const FrameBlock frame =
-      frame_block(picture, meshes_.boxes(), 2 * width_, 2 * height_, kShadowSide, kContactSide);
+  const FrameBlock frame = frame_block(picture, meshes_.boxes(), sizes_);
   tracks_.update(picture, frame);
   gl_.bind_buffer(gl::kUniformBuffer, frame_buffer_.name());
   gl_.buffer_data(gl::kUniformBuffer, sizeof frame, &frame, gl::kStreamDraw);
@@ -217,16 +248,17 @@ Image Pipeline::draw(const Picture& picture) {
 
   gl_.enable(gl::kDepthTest);
   gl_.enable(gl::kDepthClamp);
-  draw_depth(shadow_, kShadowSide, shadow_program_, picture.lights.shadows);
+  draw_depth(shadow_, sizes_.shadow_side, shadow_program_, picture.lights.shadows);
   gl_.disable(gl::kDepthClamp);
   if (picture.ground.shown) draw_contact(picture.lights.shadows);
 
   gl_.active_texture(gl::kTexture0 + kShadowUnit);
   gl_.bind_texture(gl::kTexture2d, shadow_.texture.name());
   gl_.bind_framebuffer(gl::kFramebuffer, target_.name());
-  gl_.viewport(0, 0, 2 * width_, 2 * height_);
+  gl_.viewport(0, 0, samples_wide_, samples_high_);
   gl_.clear(gl::kDepthBufferBit);
   draw_bodies(picture);
+  if (picture.edges) draw_edges();
   gl_.bind_vertex_array(empty_.name());
   if (picture.ground.shown) {
     ground_program_.use();
@@ -235,12 +267,43 @@ Image Pipeline::draw(const Picture& picture) {
   background_program_.use();
   draw_triangle();
   draw_tracks(picture);
+}
 
-  gl_.pixel_store(gl::kPackAlignment, 4);
-  gl_.read_pixels(0, 0, 2 * width_, 2 * height_, gl::kRgba, gl::kUnsignedByte, samples_.data());
+void Pipeline::check_errors() {
   if (const gl::Enum error = gl_.get_error())
     throw std::runtime_error("OpenGL failed to draw a picture (error " + std::to_string(error) + ")");
-  Image image = resolve(samples_, width_, height_);
+}
+
+void Pipeline::draw_to_window(const Picture& picture) {
+  draw_samples(picture);
+  present();
+}
+
+void Pipeline::present() {
+  if (!present_program_) {
+    present_program_ =
+        std::make_unique<gl::Program>(gl_, "present", shaders::kBackgroundVertex, shaders::kPresentFragment);
+    present_program_->use();
+    gl_.uniform_1i(present_program_->uniform("samples"), kSamplesUnit);
+  }
+  gl_.bind_framebuffer(gl::kFramebuffer, 0);
+  gl_.viewport(0, 0, sizes_.width, sizes_.height);
+  gl_.disable(gl::kDepthTest);
+  gl_.active_texture(gl::kTexture0 + kSamplesUnit);
+  gl_.bind_texture(gl::kTexture2d, color_.name());
+  gl_.bind_buffer_base(gl::kUniformBuffer, shaders::kFrameBinding, frame_buffer_.name());
+  present_program_->use();
+  draw_triangle();
+  check_errors();
+}
+
+Image Pipeline::draw(const Picture& picture) {
+  draw_samples(picture);
+  samples_.resize(static_cast<std::size_t>(samples_wide_) * static_cast<std::size_t>(samples_high_) * 4);
+  gl_.pixel_store(gl::kPackAlignment, 4);
+  gl_.read_pixels(0, 0, samples_wide_, samples_high_, gl::kRgba, gl::kUnsignedByte, samples_.data());
+  check_errors();
+  Image image = resolve(samples_, sizes_.width, sizes_.height);
   if (picture.scale) draw_color_bar(image, *picture.scale);
   return image;
 }

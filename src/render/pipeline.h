@@ -1,5 +1,5 @@
-// The passes of a picture: shadow map, contact map, and then bodies, ground, background and tracks with 2 x 2
-// samples for each pixel.
+// The passes of a picture: shadow map, contact map, and then bodies, ground, background and tracks with
+// several samples for each pixel. The samples become an image, or the pixels of a window.
 #pragma once
 
 #include <cstdint>
@@ -23,31 +23,47 @@ struct MapTarget {
   gl::Framebuffer framebuffer;
 };
 
-/// Draws pictures of one size. The context must be current during all calls and the destructor.
+/// Returns the sizes of the passes for a picture of full quality. width, height: pixels. Throws
+/// std::invalid_argument unless both are in [1, Renderer::kMaxSide].
+PassSizes pass_sizes(int width, int height);
+
+/// Draws pictures of one size. The context must be current during all calls and the destructor. Members that
+/// draw throw std::invalid_argument for a setting of the picture that is out of range, and std::runtime_error
+/// if OpenGL fails.
 class Pipeline {
  public:
-  Pipeline(const GlContext& context, int width, int height);
-  /// Returns the image of a picture. Throws std::invalid_argument for a setting of the picture that is out of
-  /// range, std::runtime_error if OpenGL fails.
+  Pipeline(const GlContext& context, const PassSizes& sizes);
+  /// Returns the image of a picture. The sizes must have 2 samples.
   Image draw(const Picture& picture);
+  /// Draws a picture, without its colour bar, into the lower left corner of framebuffer 0, that of the
+  /// window.
+  void draw_to_window(const Picture& picture);
+  /// Copies the pixels of the last picture to the window again.
+  void present();
 
  private:
+  void draw_samples(const Picture& picture);
   void draw_depth(const MapTarget& map, int side, const gl::Program& program, bool bodies);
   void draw_contact(bool bodies);
   void draw_bodies(const Picture& picture);
   void draw_body(std::size_t body);
+  void draw_edges();
   void draw_tracks(const Picture& picture);
   void draw_triangle();
   void check_target();
+  void check_errors();
 
   gl::Functions gl_;
-  int width_, height_;
+  PassSizes sizes_;
+  int samples_wide_, samples_high_;
   gl::Program shadow_program_, height_program_, contact_program_, body_program_, ground_program_,
       background_program_, track_program_;
   std::unique_ptr<gl::Program> leveled_program_;  // for bodies coloured by values; created at the first use
+  std::unique_ptr<gl::Program> present_program_;  // for windows; created at the first use
   MapTarget shadow_, heights_, contact_;
   gl::Framebuffer target_;
-  gl::Renderbuffer color_, depth_;
+  gl::Texture color_;
+  gl::Renderbuffer depth_;
   gl::Buffer frame_buffer_;
   gl::VertexArray empty_;
   MeshBatch meshes_;

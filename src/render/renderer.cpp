@@ -6,23 +6,12 @@
 #include "pipeline.h"
 
 namespace pliant {
-namespace {
-
-int checked_side(int side, const char* name) {
-  if (side < 1 || side > Renderer::kMaxSide)
-    throw std::invalid_argument(std::string("picture: the ") + name + " of " + std::to_string(side) +
-                                " pixels is not in [1, " + std::to_string(Renderer::kMaxSide) + "]");
-  return side;
-}
-
-}  // namespace
-
 class Renderer::Impl {
  public:
-  Impl(int w, int h, GlBackend backend)
-      : width(checked_side(w, "width")), height(checked_side(h, "height")), context(backend) {
+  Impl(const PassSizes& sizes, GlBackend backend)
+      : width(sizes.width), height(sizes.height), context(backend) {
     const GlContext::Current current(context);
-    pipeline = std::make_unique<Pipeline>(context, width, height);
+    pipeline = std::make_unique<Pipeline>(context, sizes);
   }
   ~Impl() {
     try {
@@ -42,7 +31,7 @@ class Renderer::Impl {
 };
 
 Renderer::Renderer(int width, int height, GlBackend backend)
-    : impl_(std::make_unique<Impl>(width, height, backend)) {}
+    : impl_(std::make_unique<Impl>(pass_sizes(width, height), backend)) {}
 Renderer::~Renderer() = default;
 
 Image Renderer::draw(const Picture& picture) {

@@ -94,6 +94,7 @@ class SceneReader {
     if (scene_->tolerance > 0 && time.given("step"))
       faults_.warn(time.at("step"), "it has no effect, because the tolerance controls the step length");
     scene_->body.joint_solver.choice = joint_solver(time.text("solver"));
+    scene_->body.stop_rate = time.number("stop_rate");
     scene_->frame_rate = output.number("frame_rate");
     constexpr double kMax = 1e12;
     if (scene_->end / scene_->step > kMax)
@@ -224,8 +225,13 @@ class SceneReader {
           r.at("rest_length"),
           "both ends are at the same place at time 0, so a spring with a rest length has no direction; "
           "expected 0, or ends at different places");
-    scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
-                        r.number("stiffness"), r.number("damping"), length);
+    if (r.given("off") && !(r.number("on") < r.number("off")))
+      return faults_.value(r.at("off"),
+                           "expected a time after \"on\", which is " + brief(r.number("on")) + " s");
+    Spring& spring = scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
+                                         r.number("stiffness"), r.number("damping"), length);
+    if (r.given("on")) spring.on = r.number("on");
+    if (r.given("off")) spring.off = r.number("off");
   }
   TimeReader times() { return {scene_->end, faults_}; }
   static Frame frame(const Reader& r) { return r.text("frame") == "body" ? Frame::body : Frame::world; }

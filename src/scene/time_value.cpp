@@ -1,6 +1,7 @@
 #include <pliant/scene/time_value.h>
 
 #include <pliant/math/formula.h>
+#include <pliant/math/time/linear_keys.h>
 
 #include "scene/json/json_write.h"
 
@@ -43,27 +44,47 @@ Type formula() {
   return text(1).expecting("a formula of t in quotes").checked(check_formula);
 }
 
+Field interpolation() {
+  return optional("interpolation",
+                  choice({{"spline", "a twice continuously differentiable cubic spline"},
+                          {"linear", "straight lines; the rate jumps at the key frames"}}),
+                  "The curve between the key frames.", "\"spline\"");
+}
+
+bool is_linear(const JsonValue& frames) {
+  const JsonValue* kind = frames.find("interpolation");
+  return kind != nullptr && kind->string() == "linear";
+}
+
 Type key_frames() {
+  const Check rule = [keys = key_rule("y")](const JsonValue& frames, const ReportAt& report) {
+    keys(frames, report);
+    const JsonValue* rates = frames.find("end_rates");
+    if (rates != nullptr && is_linear(frames))
+      report(*rates, "straight lines have no end rates; expected no \"end_rates\"", kWholeValue);
+  };
   return record({"key_frames",
-                 "Key frames: a twice continuously differentiable cubic spline through the values; constant "
-                 "before the first and after the last key frame.",
+                 "Key frames: a curve through the values; constant before the first and after the last key "
+                 "frame.",
                  {required("t", times(), "Times of the key frames, increasing.", "[0, 1, 2]"),
                   required("y", array(number(unbounded(), ""), 1),
                            "Values at these times, in the unit of the function.", "[0, 0.5, 0]"),
                   optional("end_rates", array(number(unbounded(), ""), 2, 2),
                            "Rates of change at the first and the last key frame; when absent, the second "
-                           "derivative is zero there.")}})
-      .checked(key_rule("y"));
+                           "derivative is zero there."),
+                  interpolation()}})
+      .checked(rule);
 }
 
 Type point_key_frames() {
   return record({"point_key_frames",
-                 "Key frames of points: a twice continuously differentiable cubic spline through the points; "
-                 "constant before the first and after the last key frame.",
+                 "Key frames of points: a curve through the points; constant before the first and after the "
+                 "last key frame.",
                  {required("t", times(), "Times of the key frames, increasing.", "[0, 1, 2]"),
                   required("points", array(vector3(""), 1),
                            "Points [x, y, z] at these times, in the unit of the function.",
-                           "[[0, 0, 0], [0, 0, 1], [0, 0, 0]]")}})
+                           "[[0, 0, 0], [0, 0, 1], [0, 0, 0]]"),
+                  interpolation()}})
       .checked(key_rule("points"));
 }
 
@@ -98,6 +119,12 @@ std::vector<double> numbers(const JsonValue& array) {
   return x;
 }
 
+/// Returns the function through keys without end rates. frames: the value that selects the interpolation.
+TimeFunction through(const JsonValue& frames, std::vector<double> t, std::vector<double> y) {
+  return schema::is_linear(frames) ? linear_key_frames(std::move(t), std::move(y))
+                                   : TimeFunction::key_frames(std::move(t), std::move(y));
+}
+
 }  // namespace
 
 TimeFunction read_time_function(const JsonValue& value) {
@@ -108,7 +135,7 @@ TimeFunction read_time_function(const JsonValue& value) {
     return TimeFunction::key_frames(std::move(t), std::move(y), rates->array()[0].number(),
                                     rates->array()[1].number());
   }
-  return TimeFunction::key_frames(std::move(t), std::move(y));
+  return through(value, std::move(t), std::move(y));
 }
 
 TimeVector read_time_vector(const JsonValue& value) {
@@ -121,7 +148,7 @@ TimeVector read_time_vector(const JsonValue& value) {
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<double> y;
     for (const JsonValue& point : value.find("points")->array()) y.push_back(point.array()[i].number());
-    path.component[i] = TimeFunction::key_frames(t, std::move(y));
+    path.component[i] = through(value, t, std::move(y));
   }
   return path;
 }

@@ -4,8 +4,8 @@
 # #pragma once.
 # Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
-set(order math shape deform local part solve body collision project method contact simulate scene io render)
-set(outside_core scene io render)  # folders of libraries with their own packages
+set(order math shape deform local part solve body collision project method contact simulate scene io render view)
+set(outside_core scene io render view)  # folders of libraries with their own packages
 set(faults "")
 
 function(check_file path)

@@ -33,9 +33,8 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Wo
                ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
                : point.world.value(t);
   };
-  const double stretch =
-      (position(s.b, s.spring->b) - position(s.a, s.spring->a)).norm() - s.spring->rest_length;
-  ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
+  if (!s.spring->acts_at(t)) return;
+  ledger.springs += s.spring->energy(position(s.a, s.spring->a), position(s.b, s.spring->b));
 }
 
 PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v,

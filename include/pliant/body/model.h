@@ -176,11 +176,18 @@ class Model {
   const std::vector<double>& switch_times() const { return switch_times_; }
   /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
-  /// Returns the first kink of the prescribed motion of an end of a joint, later than `after` and no later
-  /// than `until` (s), while the joint acts: over all joints, or for one joint. At a kink the position or its
-  /// rate jumps. If there is no kink, the time of the result is infinite.
+  /// Whether next_kink() can find a kink.
+  bool may_have_kinks() const;
+  /// Returns the first kink later than `after` and no later than `until` (s): of the prescribed motion of an
+  /// end of a joint or spring while it acts, a time at which a spring switches, or a multiple of
+  /// 1 / MultiBody::stop_rate. At a kink a position, its rate or a force jumps. If there is no kink, the time
+  /// of the result is infinite.
   Kink next_kink(double after, double until) const;
+  /// Returns the first kink of one joint, or of one spring.
   Kink next_kink(const JointModel& joint, double after, double until) const;
+  Kink next_kink(const SpringModel& spring, double after, double until) const;
+  /// Returns the energy that a spring has at a state while it acts, J.
+  double energy(const SpringModel& spring, const State& state) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints
   int n_side_values() const { return n_sides_; }  ///< number of values in C_q^T of all joints
   int n_q() const { return n_q_; }

@@ -26,9 +26,21 @@ PLIANT_INLINE Spring& MultiBody::spring(std::string name, Point a, Point b, doub
       !std::isfinite(stiffness + damping + rest_length))
     throw std::invalid_argument("spring '" + name +
                                 "': stiffness, damping and rest length must be finite numbers >= 0");
-  springs_.push_back(std::make_unique<Spring>(
-      Spring{std::move(name), std::move(a), std::move(b), stiffness, damping, rest_length}));
-  return *springs_.back();
+  springs_.push_back(std::make_unique<Spring>());
+  Spring& spring = *springs_.back();
+  spring.name = std::move(name);
+  spring.a = std::move(a);
+  spring.b = std::move(b);
+  spring.stiffness = stiffness;
+  spring.damping = damping;
+  spring.rest_length = rest_length;
+  return spring;
+}
+
+PLIANT_INLINE void MultiBody::remove(const Spring& spring) {
+  springs_.erase(std::remove_if(springs_.begin(), springs_.end(),
+                                [&](const std::unique_ptr<Spring>& each) { return each.get() == &spring; }),
+                 springs_.end());
 }
 
 PLIANT_INLINE PointForce& MultiBody::force(std::string name, Point at, TimeVector force, Frame frame) {

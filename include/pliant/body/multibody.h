@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,17 @@ struct Spring {
   double stiffness = 0;    ///< N/m
   double damping = 0;      ///< N s/m
   double rest_length = 0;  ///< m
+  /// The spring acts at the times on <= t < off, s. At other times it has no force and no energy, and does
+  /// not influence the length of steps. The ledger counts the energy that appears at `on` and disappears at
+  /// `off` as work of anchors. Both times must not change while a step is computed.
+  double on = -std::numeric_limits<double>::infinity(), off = std::numeric_limits<double>::infinity();
+  bool acts_at(double t) const { return on <= t && t < off; }
+
+  /// Returns the energy of the spring, J. x_a, x_b: positions of its ends, m, world.
+  double energy(const Vec3<double>& x_a, const Vec3<double>& x_b) const {
+    const double stretch = (x_b - x_a).norm() - rest_length;
+    return 0.5 * stiffness * stretch * stretch;
+  }
 };
 
 enum class Frame { world, body };
@@ -63,6 +75,9 @@ class MultiBody {
   Stabilization stabilization;
   JointSolver joint_solver;
   ContactSettings contact;
+  /// No step crosses a multiple of 1 / stop_rate (1/s); 0: steps may end at any time. Each multiple is a
+  /// kink. A load that changes at a multiple then has no influence on earlier steps.
+  double stop_rate = 0;
 
   /// Adds a part. Returns a reference to the part, valid as long as the MultiBody. Throws
   /// std::invalid_argument if the name is in use or empty.
@@ -85,6 +100,8 @@ class MultiBody {
   /// std::invalid_argument if one of these is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
                  double rest_length = 0);
+  /// Removes a spring of this MultiBody. No Model of this MultiBody may exist.
+  void remove(const Spring& spring);
   /// Adds a force (N) at a material point. frame: the frame of its components.
   PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
   /// Adds a force at a material point by a function, see PointForce::custom.

@@ -19,7 +19,8 @@ namespace pliant {
 namespace sleeping {
 
 /// The end of a step and the start of the next may differ by kTimeTolerance of the length plus kTimeUlps
-/// units in the last place of the time. A change of a drive between both times belongs to both steps.
+/// units in the last place of the time. A change of a drive near both times belongs to the second step: a
+/// load that changes after a step has no influence on this step.
 inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
 
 /// Returns whether a vector changes within h seconds after t: whether its values at t, t + h / 2 and t + h
@@ -46,6 +47,12 @@ inline bool moves(const Part& part, double t, double h) {
 /// it returns whether the prescribed motion of the part moves or rotates the part.
 inline bool moves(const Point& point, double t, double h) {
   return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
+}
+
+/// Returns whether a spring acts in the middle of the h seconds after t and an end with prescribed motion
+/// moves. No time at the ends of the step is compared, because another motion may begin there.
+inline bool pulls(const Spring& spring, const Point& end, double t, double h) {
+  return spring.acts_at(t + 0.5 * h) && moves(end, t + 0.25 * h, 0.5 * h);
 }
 
 /// Returns whether a torque can change in time: by its value, or because its axes are those of a part with
@@ -108,7 +115,9 @@ PLIANT_INLINE void Sleeping::find_drives() {
   for (const SpringModel& s : model_.springs())
     for (const auto& [end, other] : {std::pair(s.a.part, &s.spring->b), std::pair(s.b.part, &s.spring->a)})
       if (has(end) && sleeping::is_prescribed(*other))
-        drives_.push_back({end, [far = other](double t, double h) { return sleeping::moves(*far, t, h); }});
+        drives_.push_back({end, [spring = s.spring, far = other](double t, double h) {
+                             return sleeping::pulls(*spring, *far, t, h);
+                           }});
   for (const int j : model_.driven_joints()) {
     const JointModel& joint = model_.joints()[at(j)];
     drives_.push_back({joint.sides.front().part, [&joint](double t, double h) {
@@ -156,7 +165,7 @@ PLIANT_INLINE void Sleeping::begin_motion(double t, double h, State& state) {
                                                               std::max(std::abs(t), std::abs(t + h));
   for (const Drive& drive : drives_) {
     if (drive.part >= 0 && !sleeps(state, drive.part)) continue;
-    if (!drive.changes(t - tolerance, h + 2 * tolerance)) continue;
+    if (!drive.changes(t - tolerance, h)) continue;
     if (drive.part >= 0)
       wake(state, drive.part);
     else

@@ -15,6 +15,7 @@
 
 #include <pliant/math/formula.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/time/key_frames.h>
 
 namespace pliant {
 
@@ -138,19 +139,7 @@ class FormulaFunction final : public TimeFunction::Impl {
 /// Returns the spline through the keys; throws std::invalid_argument if they are not valid.
 inline TimeFunction make_spline(std::vector<double> t, std::vector<double> y,
                                 const std::optional<SplineEndRates>& rates) {
-  if (t.size() != y.size()) {
-    throw std::invalid_argument("key frames: " + std::to_string(t.size()) + " times, but " +
-                                std::to_string(y.size()) + " values");
-  }
-  if (t.empty()) throw std::invalid_argument("key frames: there is no key");
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const std::string key = "key frames: key " + std::to_string(i);
-    if (!std::isfinite(t[i])) throw std::invalid_argument(key + " has a time that is not finite");
-    if (!std::isfinite(y[i])) throw std::invalid_argument(key + " has a value that is not finite");
-    if (i > 0 && !(t[i] > t[i - 1])) {
-      throw std::invalid_argument(key + " is not later than the key before it; times must increase");
-    }
-  }
+  require_keys(t, y);
   if (rates && !(std::isfinite(rates->first) && std::isfinite(rates->last))) {
     throw std::invalid_argument("key frames: an end rate is not finite");
   }

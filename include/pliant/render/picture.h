@@ -69,6 +69,7 @@ struct Picture {
   };
 
   std::vector<Body> bodies;
+  bool edges = false;  ///< whether the edges of the triangles of all bodies are drawn as dark lines
   std::optional<Scale> scale;
   std::vector<Track> tracks;
   Ground ground;

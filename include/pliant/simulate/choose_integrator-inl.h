@@ -116,8 +116,10 @@ PLIANT_INLINE double evaluation_cost(const Part& part) {
   return cost;
 }
 
-PLIANT_INLINE bool has_stiffness(const Model& model) {
-  if (!model.springs().empty()) return true;
+PLIANT_INLINE bool has_stiffness(const Model& model, double t) {
+  const auto& springs = model.springs();
+  if (std::any_of(springs.begin(), springs.end(), [&](const SpringModel& s) { return s.spring->acts_at(t); }))
+    return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
     const Part& part = *m.part;
     return m.q0 >= 0 && (m.local != nullptr || m.drag > 0 || part.continuum() != nullptr ||
@@ -128,7 +130,7 @@ PLIANT_INLINE bool has_stiffness(const Model& model) {
 PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale,
                                                  const State& start, const std::function<bool()>& stop) {
   const Model& model = dynamics.model();
-  if (!has_stiffness(model)) {
+  if (!has_stiffness(model, start.time())) {
     if (model.body().contact.active && scale.tolerance() >= integrator_choice::kCoarse)
       return {"dormand_prince",
               "nothing is elastic or damped, and for a tolerance this coarse steps with contact need no "

@@ -432,7 +432,7 @@ PLIANT_INLINE double Simulation::integrate() {
 /// times at which joints switch or paths have kinks. The caller increments State::step.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
-  if (times.empty() && model_.driven_joints().empty()) {
+  if (times.empty() && !model_.may_have_kinks()) {
     integrate();
     return;
   }
@@ -477,11 +477,29 @@ PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
   switching_.switch_at(at, tolerance);
 }
 
-/// Stage 6: applies the impulses at a kink, a time (s) at which the velocity of a prescribed path jumps.
-/// Times that differ by at most the tolerance (s) are equal.
+/// Stage 6: applies the impulses at a kink, a time (s) at which the velocity of a prescribed path jumps, and
+/// switches springs. Times that differ by at most the tolerance (s) are equal.
 PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
+  switch_springs(kink, tolerance);
   StepContext after(dynamics_, state_, work_, step_counters_, just_after(kink), state_.h);
   switching_.follow_paths(after, kink, tolerance);
+}
+
+/// Adds the energies of the springs that begin or cease to act at a kink (s) to the work of anchors, and
+/// wakes their parts.
+PLIANT_INLINE void Simulation::switch_springs(double kink, double tolerance) {
+  for (const SpringModel& spring : model_.springs()) {
+    const bool begins = std::abs(spring.spring->on - kink) <= tolerance,
+               ceases = std::abs(spring.spring->off - kink) <= tolerance;
+    if (begins == ceases) continue;
+    State at_kink = state_;
+    at_kink.start = kink;
+    at_kink.step = 0;
+    const double energy = model_.energy(spring, at_kink);
+    state_.work[static_cast<int>(Work::anchors)] += begins ? energy : -energy;
+    for (const PortRef& end : {spring.a, spring.b})
+      if (end.part >= 0) wake(state_, end.part);
+  }
 }
 
 /// Stage 7: counts the step, and rejects a state that is not valid.

@@ -121,6 +121,7 @@ class Simulation {
   StepContext context();
   void switch_joints(double t, double tolerance);
   void follow_paths(double kink, double tolerance);
+  void switch_springs(double kink, double tolerance);
   void record_contact_errors();
   void record_without_inertia();
 

@@ -73,18 +73,18 @@ inline double stable_step_of(const Integrator& method, std::complex<double> eige
   return stable_step_of(method, std::norm(eigenvalue), 2 * damping);
 }
 
-/// Returns upper bounds of K (1/s^2) and D (1/s) of the drag and the springs at a part whose elasticity the
-/// method integrates implicitly, in mass-normalised coordinates.
+/// Returns upper bounds of K (1/s^2) and D (1/s) of the drag and the springs that act at time t (s) at a part
+/// whose elasticity the method integrates implicitly, in mass-normalised coordinates.
 struct Bound {
   double K = 0, D = 0;
 };
-inline Bound bound_springs(const Model& model, std::size_t i) {
+inline Bound bound_springs(const Model& model, double t, std::size_t i) {
   const PartModel& m = model.parts()[i];
   Bound bound;
   bound.D = m.drag;
   for (const SpringModel& s : model.springs())
     for (const PortRef& ref : {s.a, s.b}) {
-      if (ref.part != static_cast<int>(i)) continue;
+      if (ref.part != static_cast<int>(i) || !s.spring->acts_at(t)) continue;
       const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
       // The factor 2: the other end may move by an equal amount in the opposite direction.
       bound.K += 2 * s.spring->stiffness * mobility;
@@ -161,7 +161,8 @@ class StableStepSearch {
   /// Returns whether a spring acts on part i.
   bool is_pulled(std::size_t i) const {
     return std::any_of(model_.springs().begin(), model_.springs().end(), [&](const SpringModel& s) {
-      return s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i);
+      return s.spring->acts_at(state_.time()) &&
+             (s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i));
     });
   }
 
@@ -194,7 +195,7 @@ class StableStepSearch {
 
   /// Limits the step by the eigenvalues of the motion about the state.
   void limit_by_motions() {
-    if (model_.n_v() == 0 || (model_.islands().empty() && !has_stiffness(model_))) return;
+    if (model_.n_v() == 0 || (model_.islands().empty() && !has_stiffness(model_, state_.time()))) return;
     const auto limits = [&](double K, double D) { return std::isfinite(stable_step_of(method_, K, D)); };
     if (!limits(1, 0) && !limits(0, 1)) return;
     // Baumgarte's terms have a limit of their own.
@@ -298,7 +299,7 @@ class StableStepSearch {
       }
     }
     if (!is_implicit(m)) return;
-    const Bound bound = bound_springs(model_, i);
+    const Bound bound = bound_springs(model_, state_.time(), i);
     limit_by(stable_step_of(method_, bound.K, bound.D), "the springs at " + name);
     if (m.island >= 0)
       smallest_.uncounted = "the joints of parts that deform locally are not included, because " +

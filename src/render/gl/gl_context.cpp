@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "gl_platform.h"
 
@@ -31,13 +32,18 @@ std::string gl_string(const GlContext::Platform& platform, unsigned name) {
   return reinterpret_cast<const char*>(text);
 }
 
-// Opens a context with one backend and reads its strings, which proves that it works.
+// Reads the strings of a context, which proves that it works.
+void read_strings(GlContext::Platform& platform, std::string& renderer, std::string& version) {
+  platform.make_current();
+  renderer = gl_string(platform, kGlRenderer);
+  version = gl_string(platform, kGlVersion);
+  platform.release();
+}
+
+// Opens a context with one backend and reads its strings.
 std::unique_ptr<GlContext::Platform> open(const Backend& entry, std::string& renderer, std::string& version) {
   auto platform = entry.open();
-  platform->make_current();
-  renderer = gl_string(*platform, kGlRenderer);
-  version = gl_string(*platform, kGlVersion);
-  platform->release();
+  read_strings(*platform, renderer, version);
   return platform;
 }
 
@@ -75,6 +81,10 @@ GlContext::GlContext(GlBackend backend) {
                                                       : "libosmesa6, or libegl1 and libgl1-mesa-dri";
   throw std::runtime_error(std::string("found no OpenGL library for pictures; install ") + packages +
                            " (Debian names). Tried:" + tried);
+}
+
+GlContext::GlContext(Loader loader) : platform_(use_current_context(std::move(loader))), backend_("window") {
+  read_strings(*platform_, renderer_, version_);
 }
 
 GlContext::~GlContext() = default;

@@ -29,7 +29,8 @@ inline constexpr Enum kTriangles = 0x0004, kTriangleStrip = 0x0005, kLessEqual =
                       kStaticDraw = 0x88E4, kUniformBuffer = 0x8A11, kFragmentShader = 0x8B30,
                       kVertexShader = 0x8B31, kCompileStatus = 0x8B81, kLinkStatus = 0x8B82,
                       kFramebufferComplete = 0x8CD5, kColorAttachment0 = 0x8CE0, kDepthAttachment = 0x8D00,
-                      kFramebuffer = 0x8D40, kRenderbuffer = 0x8D41, kBorderColor = 0x1004;
+                      kFramebuffer = 0x8D40, kFrontAndBack = 0x0408, kLine = 0x1B01, kFill = 0x1B02,
+                      kPolygonOffsetLine = 0x2A02, kRenderbuffer = 0x8D41, kBorderColor = 0x1004;
 inline constexpr unsigned kDepthBufferBit = 0x0100;
 
 // One line for each entry point: member, GL name, result, arguments.
@@ -81,6 +82,8 @@ inline constexpr unsigned kDepthBufferBit = 0x0100;
   X(get_uniform_block_index, glGetUniformBlockIndex, Uint, (Uint, const char*))                        \
   X(get_uniform_location, glGetUniformLocation, Int, (Uint, const char*))                              \
   X(link_program, glLinkProgram, void, (Uint))                                                         \
+  X(polygon_mode, glPolygonMode, void, (Enum, Enum))                                                   \
+  X(polygon_offset, glPolygonOffset, void, (float, float))                                             \
   X(pixel_store, glPixelStorei, void, (Enum, Int))                                                     \
   X(read_buffer, glReadBuffer, void, (Enum))                                                           \
   X(read_pixels, glReadPixels, void, (Int, Int, Size, Size, Enum, Enum, void*))                        \

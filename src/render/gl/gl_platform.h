@@ -19,6 +19,8 @@ struct GlContext::Platform {
 std::unique_ptr<GlContext::Platform> open_osmesa();
 std::unique_ptr<GlContext::Platform> open_egl_surfaceless();
 std::unique_ptr<GlContext::Platform> open_egl_software_device();
+/// Returns the platform of a context that stays current on the calling thread.
+std::unique_ptr<GlContext::Platform> use_current_context(GlContext::Loader loader);
 
 /// Opens the first library of the list that can be loaded. Throws std::runtime_error with the messages of the
 /// loader if none can.

@@ -204,8 +204,8 @@ void main() {
   vec2 place = at.xy / grid.z + grid.xy;
   vec2 dx = dFdx(place), dy = dFdy(place);
   vec2 cell = sqrt(dx * dx + dy * dy);
-  vec2 thin = lines(place, cell, 1.6);
-  vec2 strong = lines(0.2 * place, 0.2 * cell, 2.6);
+  vec2 thin = lines(place, cell, 1.6 * viewport.w);
+  vec2 strong = lines(0.2 * place, 0.2 * cell, 2.6 * viewport.w);
   float line = max(0.38 * max(thin.x, thin.y), 0.75 * max(strong.x, strong.y));
 
   float radius = length(at.xy);
@@ -224,6 +224,25 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float
 const char* const kBackgroundFragment = R"(
 out vec4 result;
 void main() { result = encode(background(gl_FragCoord.y)); }
+)";
+
+// Computes a pixel from its samples: the mean of their light, as an sRGB colour (IEC 61966-2-1).
+const char* const kPresentFragment = R"(
+uniform sampler2D samples;
+out vec4 result;
+void main() {
+  int side = int(2.0 * viewport.w);
+  ivec2 corner = ivec2(gl_FragCoord.xy) * side;
+  vec3 light = vec3(0.0);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      vec3 root = texelFetch(samples, corner + ivec2(x, y), 0).rgb;
+      light += root * root;
+    }
+  light /= float(side * side);
+  vec3 high = 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055;
+  result = vec4(mix(high, 12.92 * light, vec3(lessThanEqual(light, vec3(0.0031308)))), 1.0);
+}
 )";
 
 // Each instance draws one segment as a rectangle on the screen. The rectangle extends half the line width

@@ -187,6 +187,10 @@ Record time_record() {
                 "time T, or per a shorter time scale of the part. T is 10 / rate with the \"rate\" of "
                 "\"stabilization\", normally 1 s. When absent, the tolerance "
                 "is 1e-6 with the integrator \"auto\"; with the others all steps have the length \"step\"."),
+       optional(
+           "stop_rate", number(at_least(0), "1/s"),
+           "No step crosses a multiple of 1 / stop_rate. The viewer writes it in the scenes that it saves.",
+           "0"),
        optional("solver",
                 choice({{"auto", "chosen for each island of parts by a fixed cost model"},
                         {"blocks", "blocks of C_q M^-1 C_q^T"},
@@ -204,7 +208,10 @@ Record spring_record() {
        required("to", end_point(), "Second end.", "{\"part\": \"ball\", \"at\": {\"u\": 1.5708, \"v\": 0}}"),
        required("stiffness", number(at_least(0), "N/m"), "Stiffness.", "100"),
        optional("damping", number(at_least(0), "N s/m"), "Damping.", "0"),
-       optional("rest_length", number(at_least(0), "m"), "Length without force.", "0")}};
+       optional("rest_length", number(at_least(0), "m"), "Length without force.", "0"),
+       optional("on", number(at_least(0), "s"), "Time at which the spring begins to act.", "0"),
+       optional("off", number(above(0), "s"),
+                "Time at which the spring ceases to act; when absent, never.")}};
 }
 
 Type frame_type() {

@@ -44,6 +44,7 @@ class LoadStage {
   S& power(Work kind) { return power_[static_cast<int>(kind)]; }
 
   void add(const SpringModel& s) {
+    if (!s.spring->acts_at(e_.t)) return;
     const End a = end_of(s.a, s.spring->a), b = end_of(s.b, s.spring->b);
     const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
     Vec3<S> pull, damping;  // on a, towards b

@@ -1,8 +1,9 @@
-// An OpenGL 3.3 core context without a window. Two libraries can provide one: OSMesa (Mesa before 25.1) and
+// An OpenGL 3.3 core context. Two libraries can provide one without a window: OSMesa (Mesa before 25.1) and
 // EGL (without a surface, or on Mesa's software device). These libraries are opened at run time, when a
-// context is requested.
+// context is requested. The context of a window is provided by the program that opens the window.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,11 @@ class GlContext {
   /// Opens a context. Throws std::runtime_error, which lists the backends that were tried, the reason of
   /// each failure and the packages to install.
   explicit GlContext(GlBackend backend = GlBackend::automatic);
+  /// Returns the address of a GL entry point of the current context; nullptr if there is none with that name.
+  using Loader = std::function<void*(const char* name)>;
+  /// Uses the context of a window, which the caller has made current and keeps current on this thread. Throws
+  /// std::runtime_error if the context does not work.
+  explicit GlContext(Loader loader);
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
@@ -38,7 +44,7 @@ class GlContext {
 
   /// Returns the address of a GL entry point; nullptr if there is none with that name.
   void* function(const char* name) const;
-  /// Returns "OSMesa", "EGL surfaceless" or "EGL software device".
+  /// Returns "OSMesa", "EGL surfaceless", "EGL software device" or "window".
   const std::string& backend() const { return backend_; }
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION

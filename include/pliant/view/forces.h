@@ -1,0 +1,23 @@
+// The forces of a simulation as arrows.
+#pragma once
+
+#include <vector>
+
+#include <pliant/simulate/simulation.h>
+
+namespace pliant {
+
+/// A force at a point, world.
+struct ForceArrow {
+  Vec3<double> at;     ///< m
+  Vec3<double> force;  ///< N
+};
+
+/// Returns the mean forces of the contacts of the last step, on their sides a.
+std::vector<ForceArrow> contact_forces(const Simulation& simulation);
+/// Returns the forces of the joints at the state, on their first parts, at the first points of the joints.
+std::vector<ForceArrow> joint_forces(const Simulation& simulation);
+/// Returns the forces of springs, on the parts at their ends, and the forces at points.
+std::vector<ForceArrow> load_forces(const Simulation& simulation);
+
+}  // namespace pliant

@@ -1,0 +1,122 @@
+// A simulation that a user drives while it runs: points are dragged and gravity changes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pliant/math/time/linear_keys.h>
+#include <pliant/scene/scene.h>
+#include <pliant/simulate/simulation.h>
+
+namespace pliant {
+
+/// The piecewise linear path of a point of the world, which grows while it is in use.
+struct GrowingPath {
+  std::shared_ptr<LinearKeys> component[3];
+
+  /// Makes the path with one key at a time t (s) and a point x.
+  GrowingPath(double t, const Vec3<double>& x);
+  void append(double t, const Vec3<double>& x);
+  Vec3<double> last() const;
+  double last_time() const { return component[0]->times().back(); }  ///< s
+  TimeVector function() const;
+};
+
+/// A drag: the spring between a point of a part and a moving point of the world.
+struct Drag {
+  Spring* spring;        ///< of the body; spring->a is the point of the part
+  MaterialAngles place;  ///< the coordinates of the material point, from which it can be made again exactly
+  GrowingPath path;      ///< of the point of the world
+  Vec3<double> target;   ///< position of the point of the world at the end of the next interval, m
+  bool ends = false;     ///< whether the drag ends at the end of the next interval
+};
+
+/// A rest value of a dynamic parameter that the user can change.
+struct RestValue {
+  const Part* part;
+  std::string parameter;
+  Range range;                       ///< allowed values
+  double first;                      ///< value in the scene
+  std::shared_ptr<LinearKeys> path;  ///< the values so far
+  double next;                       ///< value at the end of the next interval
+};
+
+/// Advances a scene by intervals of equal length, 1 / rate(). All actions of the user take effect between two
+/// intervals, so that the motion can be repeated to the last bit (save_scene.h).
+class LiveSimulation {
+ public:
+  /// Prepares the scene, which must outlive the object, at time 0. display_rate (1/s): wanted number of
+  /// intervals per second. With a fixed step, an interval is the nearest whole number of steps, at least one.
+  /// Sets Scene::integrator to the chosen method and MultiBody::stop_rate. Throws what Simulation throws.
+  explicit LiveSimulation(Scene& scene, double display_rate = 60, int threads = 1);
+
+  /// Advances by one interval. Throws what Simulation::step() throws; the simulation is then at the end of
+  /// the last good step, and only reset() and saving make sense.
+  void advance();
+  /// Returns to time 0 and forgets all actions.
+  void reset();
+
+  double rate() const { return rate_; }                  ///< intervals per second, 1/s
+  std::int64_t intervals() const { return intervals_; }  ///< intervals since time 0
+  /// Time after a number of intervals, s.
+  double time_after(std::int64_t intervals) const { return static_cast<double>(intervals) / rate_; }
+  const Simulation& simulation() const { return *simulation_; }
+  Ledger ledger() { return simulation_->ledger(); }
+  const Scene& scene() const { return *scene_; }
+
+  /// Begins to drag a point of a moving part by a spring of rest length 0 and a damper (N/m, N s/m) between
+  /// this point and a point of the world, which starts at the position of the point. Throws
+  /// std::invalid_argument if the point is not on a moving part, or for a negative or infinite constant.
+  void grab(const Point& point, double stiffness, double damping);
+  /// Moves the point of the world of the last drag to a position (m, world): it arrives there at the end of
+  /// the next interval.
+  void drag_to(const Vec3<double>& position);
+  /// Ends the last drag at the end of the next interval.
+  void release();
+  /// Whether the last drag has not ended.
+  bool is_dragging() const;
+  /// Changes gravity (m/s^2, world) linearly within the next interval. Throws std::invalid_argument if the
+  /// gravity of the scene changes in time.
+  void set_gravity(const Vec3<double>& gravity);
+
+  /// The rest values of moving parts that are constant in the scene and have a stiffness. Their order does
+  /// not change.
+  const std::vector<RestValue>& rest_values() const { return rest_values_; }
+  /// Changes a rest value linearly within the next interval. i: its number in rest_values(); value: m, rad
+  /// or 1. Throws std::invalid_argument for a value out of range.
+  void set_rest_value(std::size_t i, double value);
+
+  /// All drags since time 0.
+  const std::vector<Drag>& drags() const { return drags_; }
+  /// The path of gravity; nullptr if the user has not changed it.
+  const GrowingPath* gravity() const { return gravity_.get(); }
+
+ private:
+  void free_rest_values();
+  void extend_paths(double now, double next);
+  void rebuild();
+  void continue_from(State state);
+  std::string new_name() const;
+
+  Scene* scene_;
+  int threads_;
+  std::int64_t steps_ = 0;  // fixed steps in an interval; 0 with a tolerance
+  double rate_;
+  std::unique_ptr<Simulation> simulation_;
+  std::int64_t intervals_ = 0;
+  std::vector<Drag> drags_;
+  std::unique_ptr<GrowingPath> gravity_;
+  std::vector<RestValue> rest_values_;
+  Vec3<double> next_gravity_ = Vec3<double>::Zero();
+};
+
+/// Returns the stiffness (N/m) with which a part of its mass oscillates twice in a second, and the damping (N
+/// s/m) of half the critical value.
+struct DragSpring {
+  double stiffness, damping;
+};
+DragSpring drag_spring(const Part& part);
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// The window that shows a running scene or a recording. It needs GLFW and Dear ImGui when pliant is built.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+
+#include <pliant/io/recording.h>
+#include <pliant/scene/scene.h>
+
+namespace pliant {
+
+struct ViewOptions {
+  int width = 960, height = 540;  ///< of the window, pixels
+  int threads = 0;                ///< of the simulation; 0: one for each processor but one, at least one
+  bool plays = false;             ///< whether the motion starts at once
+  std::filesystem::path scene_folder = ".";  ///< folder of the scene, to which its mesh files are relative
+  std::filesystem::path saved;               ///< the file that the button "save" writes
+  /// File of synthetic input (README.md of this room): it drives the window in place of a user. Empty: none.
+  std::filesystem::path script;
+  double bench =
+      0;  ///< above 0: plays for this wall time (s), prints frames per second and speed, and closes
+};
+
+/// Returns the Debian packages without which this build has no window, separated by " and "; empty if it has
+/// a window.
+std::string missing_window_packages();
+
+/// Simulates a scene in a window until the user closes it. out: for the results of scripts and benches.
+/// Throws std::runtime_error if no window opens, and what LiveSimulation, StatePicture and WindowRenderer
+/// throw.
+void view_scene(Scene& scene, const ViewOptions& options, std::ostream& out);
+
+/// Shows a recording in a window until the user closes it. Throws as view_scene() does.
+void view_recording(Scene& scene, const Model& model, const Recording& recording, const ViewOptions& options,
+                    std::ostream& out);
+
+}  // namespace pliant

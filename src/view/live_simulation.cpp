@@ -1,0 +1,182 @@
+#include <pliant/view/live_simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <pliant/body/placed_point.h>
+
+namespace pliant {
+
+GrowingPath::GrowingPath(double t, const Vec3<double>& x) {
+  for (int i = 0; i < 3; ++i)
+    component[i] = std::make_shared<LinearKeys>(std::vector<double>{t}, std::vector<double>{x[i]});
+}
+
+void GrowingPath::append(double t, const Vec3<double>& x) {
+  for (int i = 0; i < 3; ++i) component[i]->append(t, x[i]);
+}
+
+Vec3<double> GrowingPath::last() const {
+  return {component[0]->values().back(), component[1]->values().back(), component[2]->values().back()};
+}
+
+TimeVector GrowingPath::function() const {
+  return {TimeFunction(component[0]), TimeFunction(component[1]), TimeFunction(component[2])};
+}
+
+LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
+    : scene_(&scene), threads_(threads), rate_(display_rate) {
+  if (!(display_rate > 0) || !std::isfinite(display_rate))
+    throw std::invalid_argument("a display rate of " + std::to_string(display_rate) +
+                                " per second; expected a positive number");
+  if (scene.tolerance == 0) {
+    steps_ = std::max<std::int64_t>(1, std::llround(1 / (display_rate * scene.step)));
+    rate_ = 1 / (static_cast<double>(steps_) * scene.step);
+  }
+  scene.body.stop_rate = rate_;
+  free_rest_values();
+  if (scene.integrator == kAutomatic)
+    scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
+  reset();
+}
+
+/// Makes the rest values that the user can change functions of time.
+void LiveSimulation::free_rest_values() {
+  for (const auto& part : scene_->body.parts()) {
+    if (part->fixed() || part->continuum() != nullptr) continue;
+    part->prepare();
+    const Parameters& parameters = part->parameters();
+    std::vector<RestValue> found;
+    for (int k = 0; k < parameters.n_dynamic(); ++k) {
+      const Parameter& parameter = parameters.moving(k);
+      if (!parameter.rest.is_constant() || part->K_s().row(k).isZero(0)) continue;
+      const double value = parameter.rest_value();
+      found.push_back({part.get(), parameter.name, parameter.spec->frozen, value,
+                       std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{value}),
+                       value});
+    }
+    for (const RestValue& rest : found) part->rest(rest.parameter, TimeFunction(rest.path));
+    rest_values_.insert(rest_values_.end(), found.begin(), found.end());
+  }
+}
+
+void LiveSimulation::set_rest_value(std::size_t i, double value) {
+  RestValue& rest = rest_values_.at(i);
+  if (!rest.range.contains(value))
+    throw std::invalid_argument("the rest value " + std::to_string(value) + " of " + rest.part->name() + "." +
+                                rest.parameter + " is out of range");
+  rest.next = value;
+}
+
+/// Adds the keys of the next interval, from `now` to `next` (s), to the paths that change.
+void LiveSimulation::extend_paths(double now, double next) {
+  for (Drag& drag : drags_) {
+    if (std::isfinite(drag.spring->off)) continue;
+    drag.path.append(next, drag.target);
+    if (drag.ends) drag.spring->off = next;
+  }
+  if (gravity_ && next_gravity_ != gravity_->last()) {
+    if (gravity_->last_time() < now) gravity_->append(now, gravity_->last());
+    gravity_->append(next, next_gravity_);
+  }
+  for (RestValue& rest : rest_values_) {
+    const double last = rest.path->values().back();
+    if (rest.next == last) continue;
+    if (rest.path->times().back() < now) rest.path->append(now, last);
+    rest.path->append(next, rest.next);
+  }
+}
+
+void LiveSimulation::rebuild() {
+  simulation_ = std::make_unique<Simulation>(scene_->body, scene_->integrator, threads_, scene_->tolerance);
+}
+
+void LiveSimulation::reset() {
+  simulation_.reset();
+  for (const Drag& drag : drags_) scene_->body.remove(*drag.spring);
+  drags_.clear();
+  if (gravity_) scene_->body.changing_gravity.reset();
+  gravity_.reset();
+  for (RestValue& rest : rest_values_) rest.path->restart(0, rest.next = rest.first);
+  intervals_ = 0;
+  rebuild();
+}
+
+void LiveSimulation::advance() {
+  const double next = time_after(intervals_ + 1);
+  extend_paths(time_after(intervals_), next);
+  if (steps_ > 0)
+    for (std::int64_t i = 0; i < steps_; ++i) simulation_->step(scene_->step);
+  else
+    while (simulation_->time() < next) simulation_->step_up_to(next);
+  ++intervals_;
+}
+
+void LiveSimulation::grab(const Point& point, double stiffness, double damping) {
+  if (point.part == nullptr || point.part->fixed())
+    throw std::invalid_argument("only points of moving parts can be dragged");
+  const double now = time_after(intervals_);
+  State state = simulation_->state();
+  const MaterialAngles place = angles(point.material);
+  Point exact = point;
+  exact.material = material_at(place.u, place.v, place.w);
+  const Vec3<double> start = PlacedPoint(simulation_->model(), exact).at(state);
+  GrowingPath path(now, start);
+  Spring& spring = scene_->body.spring(new_name(), exact, world(path.function()), stiffness, damping);
+  spring.on = now;
+  drags_.push_back({&spring, place, std::move(path), start});
+  wake(state, scene_->body.index(*point.part));
+  continue_from(std::move(state));
+}
+
+/// Returns a name that no spring has.
+std::string LiveSimulation::new_name() const {
+  const auto& springs = scene_->body.springs();
+  for (std::size_t number = drags_.size() + 1;; ++number) {
+    std::string name = "drag " + std::to_string(number);
+    if (std::none_of(springs.begin(), springs.end(),
+                     [&](const auto& spring) { return spring->name == name; }))
+      return name;
+  }
+}
+
+/// Makes the simulation of the changed body and continues from a state of the old one.
+void LiveSimulation::continue_from(State state) {
+  const double start_energy = simulation_->start_energy();
+  rebuild();
+  simulation_->set_state(std::move(state));
+  simulation_->set_start_energy(start_energy);
+}
+
+bool LiveSimulation::is_dragging() const {
+  return !drags_.empty() && !std::isfinite(drags_.back().spring->off);
+}
+
+void LiveSimulation::drag_to(const Vec3<double>& position) {
+  if (is_dragging()) drags_.back().target = position;
+}
+
+void LiveSimulation::release() {
+  if (is_dragging()) drags_.back().ends = true;
+}
+
+void LiveSimulation::set_gravity(const Vec3<double>& gravity) {
+  if (!gravity_) {
+    if (scene_->body.changing_gravity)
+      throw std::invalid_argument("the gravity of this scene changes in time; it cannot be changed by hand");
+    gravity_ = std::make_unique<GrowingPath>(0, scene_->body.gravity);
+    scene_->body.changing_gravity = gravity_->function();
+    continue_from(simulation_->state());
+  }
+  next_gravity_ = gravity;
+}
+
+DragSpring drag_spring(const Part& part) {
+  constexpr double frequency = 2, damping_ratio = 0.5;
+  const double rate = 2 * kPi * frequency, mass = part.total_mass();
+  return {mass * rate * rate, 2 * damping_ratio * mass * rate};
+}
+
+}  // namespace pliant

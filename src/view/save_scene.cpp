@@ -1,0 +1,94 @@
+#include <pliant/view/save_scene.h>
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Returns the document of a scene after its overrides, "/pointer=value".
+Json document_of(const Scene& scene) {
+  Json document = Json::parse(scene.document, nullptr, true, true);
+  for (const std::string& assignment : scene.overrides) {
+    const std::size_t equals = assignment.find('=');
+    const std::string text = assignment.substr(equals + 1);
+    Json value = Json::parse(text, nullptr, false);
+    document[Json::json_pointer(assignment.substr(0, equals))] = value.is_discarded() ? Json(text) : value;
+  }
+  return document;
+}
+
+Json key_frames_of(const GrowingPath& path) {
+  Json points = Json::array();
+  const std::vector<double>& t = path.component[0]->times();
+  for (std::size_t i = 0; i < t.size(); ++i)
+    points.push_back(
+        {path.component[0]->values()[i], path.component[1]->values()[i], path.component[2]->values()[i]});
+  return {{"t", t}, {"points", std::move(points)}, {"interpolation", "linear"}};
+}
+
+Json spring_of(const Drag& drag) {
+  const Spring& spring = *drag.spring;
+  const MaterialAngles& at = drag.place;
+  Json place = {{"u", at.u}, {"v", at.v}, {"w", at.w}};
+  if (spring.a.patch > 0) place["patch"] = spring.a.patch;
+  Json json = {{"name", spring.name},
+               {"from", {{"part", spring.a.part->name()}, {"at", std::move(place)}}},
+               {"to", {{"world", key_frames_of(drag.path)}}},
+               {"stiffness", spring.stiffness},
+               {"damping", spring.damping},
+               {"on", spring.on}};
+  if (std::isfinite(spring.off)) json["off"] = spring.off;
+  return json;
+}
+
+/// Writes the rest values that the user has changed into the parts of the document.
+void set_rest_values(Json& document, const LiveSimulation& simulation) {
+  for (const RestValue& rest : simulation.rest_values()) {
+    if (rest.path->times().size() == 1) continue;
+    const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
+    Json& parameter = document["parts"][number]["parameters"][rest.parameter];
+    if (!parameter.is_object()) parameter = Json::object();
+    parameter["rest"] = {{"t", rest.path->times()}, {"y", rest.path->values()}, {"interpolation", "linear"}};
+  }
+}
+
+/// Makes the paths of mesh files relative to another folder.
+void move_meshes(Json& document, const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (!document.contains("contact") || !document["contact"].contains("obstacles")) return;
+  for (Json& obstacle : document["contact"]["obstacles"]) {
+    if (!obstacle.contains("mesh")) continue;
+    const std::filesystem::path file = std::filesystem::absolute(from / obstacle["mesh"].get<std::string>());
+    obstacle["mesh"] = file.lexically_relative(std::filesystem::absolute(to).lexically_normal()).string();
+  }
+}
+
+}  // namespace
+
+std::string saved_scene(const LiveSimulation& simulation, const std::filesystem::path& scene_folder,
+                        const std::filesystem::path& folder) {
+  const Scene& scene = simulation.scene();
+  Json document = document_of(scene);
+  if (!document.contains("name")) document["name"] = scene.name;
+  Json& time = document["time"];
+  time["end"] = simulation.time_after(simulation.intervals());
+  time["integrator"] = scene.integrator;
+  time["stop_rate"] = simulation.rate();
+  if (scene.tolerance > 0) {
+    time["tolerance"] = scene.tolerance;
+    time.erase("step");
+  } else {
+    time["step"] = scene.step;
+  }
+  document["output"]["frame_rate"] = simulation.rate();
+  for (const Drag& drag : simulation.drags()) document["springs"].push_back(spring_of(drag));
+  if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
+  set_rest_values(document, simulation);
+  move_meshes(document, scene_folder, folder);
+  return document.dump(1) + "\n";
+}
+
+}  // namespace pliant

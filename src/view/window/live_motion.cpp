@@ -1,0 +1,222 @@
+#include "live_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <ostream>
+#include <thread>
+#include <utility>
+
+#include <imgui.h>
+
+#include <pliant/io/run/run.h>
+#include <pliant/view/save_scene.h>
+
+namespace pliant {
+namespace {
+
+const Eigen::Vector3f kDragColor(0.85f, 0.15f, 0.1f);
+const Eigen::Vector3f kContactColor(0.1f, 0.55f, 0.2f), kJointColor(0.15f, 0.3f, 0.8f),
+    kLoadColor(0.75f, 0.45f, 0.05f);
+constexpr float kDragWidth = 2.5f, kTargetWidth = 8, kForceWidth = 2, kForceDotWidth = 5;  // pixels
+constexpr float kSliderWidth = 130;                                                        // pixels
+constexpr double kFarther = 1.5;        // distance of the automatic camera, in distances that show time 0
+constexpr double kLongestForce = 0.25;  // length of the line of the largest force, in sizes of the scene
+
+/// Returns the number of threads for the simulation: one processor is left to the window.
+int threads_of(Scene& scene, int asked) {
+  if (asked > 0) return asked;
+  const int spare = static_cast<int>(std::thread::hardware_concurrency()) - 1;
+  return std::clamp(automatic_threads(scene), 1, std::max(1, spare));
+}
+
+}  // namespace
+
+LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
+    : scene_(&scene),
+      options_(options),
+      run_(scene, 60, threads_of(scene, options.threads)),
+      model_(scene.body),
+      points_(scene, model_),
+      shown_(scene, model_),
+      snapshot_(run_.snapshot()),
+      gravity_is_free_(!scene.body.changing_gravity),
+      first_gravity_(scene.body.gravity_at(0)) {
+  for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
+  run_.wait_for([&](LiveSimulation& simulation) { rest_values_ = simulation.rest_values(); });
+  shown_.set(snapshot_->state);
+  const State& state = snapshot_->state;
+  Eigen::AlignedBox3d bodies = shown_.bounds(state), all = bodies;
+  shown_.extend_to_anchors(state.time(), bodies, all);
+  if (!all.isEmpty()) size_ = all.diagonal().norm();
+  shown_.set_view(bodies, all, static_cast<double>(options.width) / options.height);
+  if (!scene.camera.eye) zoom(shown_.picture().camera, 1 / kFarther);
+}
+
+bool LiveMotion::refresh() {
+  std::shared_ptr<const Snapshot> newest = run_.snapshot();
+  plays_ = newest->running;
+  if (newest == snapshot_) return false;
+  snapshot_ = std::move(newest);
+  show_again();
+  return true;
+}
+
+void LiveMotion::show_again() {
+  shown_.set(snapshot_->state);
+  if (scene_->coloring) {
+    highest_ = std::max(highest_, shown_.meshes().high_value(snapshot_->state).value_or(0));
+    shown_.set_scale(highest_);
+  }
+  add_forces(snapshot_->contacts, kContactColor);
+  add_forces(snapshot_->joints, kJointColor);
+  add_forces(snapshot_->loads, kLoadColor);
+  add_drag_line();
+}
+
+void LiveMotion::add_drag_line() {
+  if (!snapshot_->dragging) return;
+  add_line({snapshot_->held, snapshot_->target}, kDragColor, kDragWidth);
+  add_line({snapshot_->target}, kDragColor, kTargetWidth);
+  add_line({snapshot_->held}, kDragColor, kTargetWidth);
+}
+
+void LiveMotion::add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width) {
+  Picture::Track track;
+  track.points = std::move(points);
+  track.color = color;
+  track.width = width;
+  shown_.picture().tracks.push_back(std::move(track));
+}
+
+/// Adds a line for each force, with a dot at its point. The largest force so far is a quarter of the scene
+/// long.
+void LiveMotion::add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color) {
+  for (const ForceArrow& arrow : arrows) largest_force_ = std::max(largest_force_, arrow.force.norm());
+  if (!(largest_force_ > 0)) return;
+  const double scale = kLongestForce * size_ / largest_force_;
+  for (const ForceArrow& arrow : arrows) {
+    add_line({arrow.at, arrow.at + scale * arrow.force}, color, kForceWidth);
+    add_line({arrow.at}, color, kForceDotWidth);
+  }
+}
+
+void LiveMotion::play(bool on) {
+  on ? run_.play() : run_.pause();
+}
+
+void LiveMotion::step() {
+  run_.step_once();
+}
+
+void LiveMotion::reset() {
+  run_.reset();
+  for (RestValue& rest : rest_values_) rest.next = rest.first;
+  for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
+}
+
+void LiveMotion::color_by_strain(bool on) {
+  if (on)
+    scene_->coloring = Coloring{};
+  else
+    scene_->coloring.reset();
+  highest_ = 0;
+  // The rest values of the parts must not change meanwhile.
+  run_.wait_for([&](LiveSimulation&) { shown_.color_again(); });
+  show_again();
+}
+
+std::optional<std::string> LiveMotion::grab(const Hit& hit) {
+  const std::optional<Point> point = points_.at(hit);
+  if (!point || point->part->fixed()) return {};
+  DragSpring spring = drag_spring(*point->part);
+  const double factor = std::pow(10.0, drag_strength_);
+  spring.stiffness *= factor;
+  spring.damping *= std::sqrt(factor);
+  run_.post([point = *point, spring](LiveSimulation& simulation) {
+    simulation.grab(point, spring.stiffness, spring.damping);
+  });
+  return point->part->name();
+}
+
+void LiveMotion::drag_to(const Vec3<double>& position) {
+  run_.post([position](LiveSimulation& simulation) { simulation.drag_to(position); });
+}
+
+void LiveMotion::release() {
+  run_.post([](LiveSimulation& simulation) { simulation.release(); });
+}
+
+std::string LiveMotion::save() {
+  std::string text;
+  run_.wait_for([&](LiveSimulation& simulation) {
+    text = saved_scene(simulation, options_.scene_folder, options_.saved.parent_path());
+  });
+  std::ofstream file(options_.saved);
+  if (!(file << text).flush()) return "cannot write " + options_.saved.string();
+  return "saved in " + options_.saved.string();
+}
+
+void LiveMotion::add_to_panel(const std::string& selected) {
+  const Snapshot& now = *snapshot_;
+  ImGui::Text("t = %.3f s", now.state.time());
+  if (now.running)
+    ImGui::Text("%.2f x real time", now.speed);
+  else
+    ImGui::TextUnformatted("paused");
+  if (ImGui::Checkbox("as fast as possible", &fast_))
+    run_.set_max_speed(fast_ ? std::numeric_limits<double>::infinity() : 1);
+  ImGui::PushItemWidth(kSliderWidth);
+  ImGui::SliderFloat("drag stiffness", &drag_strength_, -2, 3, "10^%.1f");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("factor of the stiffness of the next drag");
+  if (gravity_is_free_ && ImGui::SliderFloat3("gravity", gravity_, -20, 20, "%.1f")) {
+    const Vec3<double> wanted(gravity_[0], gravity_[1], gravity_[2]);
+    run_.post([wanted](LiveSimulation& simulation) { simulation.set_gravity(wanted); });
+  }
+  add_rest_values(selected);
+  ImGui::PopItemWidth();
+  ImGui::TextUnformatted("forces of");
+  bool changed = ImGui::Checkbox("contacts", &forces_.contacts);
+  ImGui::SameLine();
+  changed = ImGui::Checkbox("joints", &forces_.joints) || changed;
+  ImGui::SameLine();
+  changed = ImGui::Checkbox("loads", &forces_.loads) || changed;
+  if (changed) {
+    largest_force_ = 0;
+    run_.show_forces(forces_);
+  }
+  ImGui::Separator();
+  const Ledger& ledger = now.ledger;
+  ImGui::Text("energy %.4g J", ledger.energy());
+  ImGui::Text("work of anchors %.4g J", ledger.work[static_cast<int>(Work::anchors)]);
+  ImGui::Text("balance %.2g J", ledger.balance);
+  if (!now.failure.empty()) ImGui::TextWrapped("%s", now.failure.c_str());
+  if (!now.refusal.empty()) ImGui::TextWrapped("%s", now.refusal.c_str());
+}
+
+/// Adds a slider for each rest value of a part, from 0.3 to 2 times its first value, or from -1 to 1.
+void LiveMotion::add_rest_values(const std::string& part) {
+  for (std::size_t i = 0; i < rest_values_.size(); ++i) {
+    RestValue& rest = rest_values_[i];
+    if (rest.part->name() != part) continue;
+    const double a = rest.first != 0 ? 0.3 * rest.first : -1, b = rest.first != 0 ? 2 * rest.first : 1;
+    const auto low = static_cast<float>(std::clamp(std::min(a, b), rest.range.min, rest.range.max)),
+               high = static_cast<float>(std::clamp(std::max(a, b), rest.range.min, rest.range.max));
+    auto value = static_cast<float>(rest.next);
+    if (!ImGui::SliderFloat(rest.parameter.c_str(), &value, low, high, "%.3f")) continue;
+    rest.next = std::clamp<double>(value, rest.range.min, rest.range.max);
+    run_.post([i, wanted = rest.next](LiveSimulation& simulation) { simulation.set_rest_value(i, wanted); });
+  }
+}
+
+void LiveMotion::report(std::ostream& out) const {
+  const Snapshot& now = *snapshot_;
+  out << std::setprecision(17) << "time " << now.state.time() << " s, speed " << now.speed
+      << ", cost of an interval " << now.interval_cost << " s";
+  if (now.dragging) out << ", held " << now.held.transpose() << ", target " << now.target.transpose();
+  out << "\n";
+}
+
+}  // namespace pliant

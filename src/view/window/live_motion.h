@@ -1,0 +1,54 @@
+// The running simulation of a window.
+#pragma once
+
+#include <filesystem>
+
+#include <pliant/view/live_run.h>
+#include <pliant/view/viewer.h>
+
+#include "motion.h"
+
+namespace pliant {
+
+class LiveMotion final : public Motion {
+ public:
+  LiveMotion(Scene& scene, const ViewOptions& options);
+
+  bool refresh() override;
+  StatePicture& shown() override { return shown_; }
+  double time() const override { return snapshot_->state.time(); }
+  bool plays() const override { return plays_; }
+  void play(bool on) override;
+  void step() override;
+  void reset() override;
+  void show_again() override;
+  void color_by_strain(bool on) override;
+  std::optional<std::string> grab(const Hit& hit) override;
+  void drag_to(const Vec3<double>& position) override;
+  void release() override;
+  std::string save() override;
+  void add_to_panel(const std::string& selected) override;
+  void report(std::ostream& out) const override;
+
+ private:
+  void add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width);
+  void add_drag_line();
+  void add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color);
+  void add_rest_values(const std::string& part);
+
+  Scene* scene_;
+  ViewOptions options_;
+  LiveRun run_;  // made before model_, because it may still change the parts
+  std::vector<RestValue> rest_values_;
+  Model model_;  // of the picture; the simulation has its own, which changes with every drag
+  SurfacePoints points_;
+  StatePicture shown_;
+  std::shared_ptr<const Snapshot> snapshot_;
+  bool plays_ = false, fast_ = false, gravity_is_free_;
+  Vec3<double> first_gravity_;            // m/s^2
+  float drag_strength_ = 0, gravity_[3];  // logarithm to base 10 of the factor of the stiffness; m/s^2
+  ShownForces forces_;
+  double highest_ = 0, largest_force_ = 0, size_ = 1;  // of the strain so far; N; of the scene at time 0, m
+};
+
+}  // namespace pliant

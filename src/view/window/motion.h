@@ -1,0 +1,48 @@
+// What a window shows: a running simulation, or a recording.
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include <pliant/render/state_picture.h>
+#include <pliant/view/pick.h>
+
+namespace pliant {
+
+class Motion {
+ public:
+  virtual ~Motion() = default;
+
+  /// Takes over the newest state. Returns whether the picture has changed since the last call.
+  virtual bool refresh() = 0;
+  /// Makes the picture of the state again, after a setting of it has changed.
+  virtual void show_again() = 0;
+  /// The picture of the state with its meshes. The window changes its camera.
+  virtual StatePicture& shown() = 0;
+  virtual double time() const = 0;  ///< of the state that is shown, s
+
+  virtual bool plays() const = 0;
+  virtual void play(bool on) = 0;
+  /// Pauses and goes one interval, or one frame, forwards.
+  virtual void step() = 0;
+  /// Pauses and returns to the start.
+  virtual void reset() = 0;
+  /// Colours the parts by their strain, or by their own colours.
+  virtual void color_by_strain(bool on) = 0;
+
+  /// Begins to drag the point of a hit. Returns the name of its part, or nothing if it cannot be dragged.
+  virtual std::optional<std::string> grab(const Hit& hit) = 0;
+  virtual void drag_to(const Vec3<double>& position) = 0;
+  virtual void release() = 0;
+  /// Writes the scene with the actions of the user. Returns a text for the user.
+  virtual std::string save() = 0;
+
+  /// Adds the controls and values of this kind of motion to the panel of the window. selected: the name of
+  /// the part that was clicked last.
+  virtual void add_to_panel(const std::string& selected) = 0;
+  /// Prints the state of a drag, and the simulated time divided by wall time, for scripts and benches.
+  virtual void report(std::ostream& out) const = 0;
+};
+
+}  // namespace pliant

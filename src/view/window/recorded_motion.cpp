@@ -1,0 +1,83 @@
+#include "recorded_motion.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include <imgui.h>
+
+namespace pliant {
+
+RecordedMotion::RecordedMotion(Scene& scene, const Model& model, const Recording& recording)
+    : scene_(&scene),
+      model_(&model),
+      recording_(&recording),
+      film_(std::make_unique<Film>(scene, model, recording)),
+      first_(recording.time(0)),
+      last_(recording.time(recording.rows() - 1)),
+      time_(first_) {
+  film_->at(time_);
+}
+
+void RecordedMotion::show(double time) {
+  time_ = std::clamp(time, first_, last_);
+  plays_ = false;
+  changed_ = true;
+}
+
+void RecordedMotion::play(bool on) {
+  if (on && time_ >= last_) time_ = first_;
+  plays_ = on;
+  advanced_ = WallClock::now();
+}
+
+void RecordedMotion::step() {
+  show(time_ + 1 / scene_->frame_rate);
+}
+
+bool RecordedMotion::refresh() {
+  if (plays_) {
+    time_ = std::min(last_, time_ + seconds_since(advanced_));
+    advanced_ = WallClock::now();
+    changed_ = true;
+    plays_ = time_ < last_;
+  }
+  if (!changed_) return false;
+  changed_ = false;
+  film_->at(time_);
+  return true;
+}
+
+void RecordedMotion::color_by_strain(bool on) {
+  if (on)
+    scene_->coloring = Coloring{};
+  else
+    scene_->coloring.reset();
+  const Picture before = film_->shown().picture();
+  const bool connectors = film_->shown().shows_connectors;
+  film_ = std::make_unique<Film>(*scene_, *model_, *recording_);
+  film_->shown().shows_connectors = connectors;
+  film_->at(time_);
+  film_->shown().picture().camera = before.camera;
+  film_->shown().picture().edges = before.edges;
+  changed_ = true;
+}
+
+std::optional<std::string> RecordedMotion::grab(const Hit& hit) {
+  (void)hit;  // the parts of a recording cannot be dragged
+  return {};
+}
+
+void RecordedMotion::add_to_panel(const std::string&) {
+  auto time = static_cast<float>(time_);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderFloat("##time", &time, static_cast<float>(first_), static_cast<float>(last_),
+                         "t = %.3f s"))
+    show(time);
+  ImGui::Text("%lld states, %.3f s", static_cast<long long>(recording_->rows()), last_ - first_);
+}
+
+void RecordedMotion::report(std::ostream& out) const {
+  out << "time " << time_ << " s, recorded to " << last_ << " s\n";
+}
+
+}  // namespace pliant

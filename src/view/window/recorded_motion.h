@@ -1,0 +1,44 @@
+// The recording of a window.
+#pragma once
+
+#include <pliant/io/run/wall_clock.h>
+#include <pliant/render/film.h>
+#include <pliant/view/viewer.h>
+
+#include "motion.h"
+
+namespace pliant {
+
+class RecordedMotion final : public Motion {
+ public:
+  RecordedMotion(Scene& scene, const Model& model, const Recording& recording);
+
+  bool refresh() override;
+  StatePicture& shown() override { return film_->shown(); }
+  double time() const override { return time_; }
+  bool plays() const override { return plays_; }
+  void play(bool on) override;
+  void step() override;
+  void reset() override { show(first_); }
+  void show_again() override { changed_ = true; }
+  void color_by_strain(bool on) override;
+  std::optional<std::string> grab(const Hit& hit) override;
+  void drag_to(const Vec3<double>&) override {}
+  void release() override {}
+  std::string save() override { return "a recording is saved already"; }
+  void add_to_panel(const std::string& selected) override;
+  void report(std::ostream& out) const override;
+
+ private:
+  void show(double time);
+
+  Scene* scene_;
+  const Model* model_;
+  const Recording* recording_;
+  std::unique_ptr<Film> film_;
+  double first_, last_, time_;  // s
+  bool plays_ = false, changed_ = true;
+  WallClock::time_point advanced_ = WallClock::now();
+};
+
+}  // namespace pliant

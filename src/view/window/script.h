@@ -1,0 +1,35 @@
+// Synthetic input: a text file whose lines are inputs of a user and pauses.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "viewer.h"
+
+namespace pliant {
+
+/// The README of include/pliant/view lists the lines.
+class Script {
+ public:
+  /// Throws std::runtime_error if the file cannot be read.
+  explicit Script(const std::filesystem::path& file);
+
+  /// Performs lines until one that waits for pictures. To be called before each picture. Returns false at the
+  /// end. out: for the lines that report. Throws std::runtime_error that names a line that is not known.
+  bool perform(Viewer& viewer, std::ostream& out);
+
+ private:
+  bool perform_line(const std::string& line, Viewer& viewer, std::ostream& out);
+  void move_over(const std::string& part, Viewer& viewer) const;
+  [[noreturn]] void fail(const std::string& reason) const;
+
+  std::filesystem::path file_;
+  std::vector<std::string> lines_;
+  std::size_t next_ = 0;
+  int pictures_ = 0;   // that are still to be drawn
+  double until_ = -1;  // simulated time that is waited for, s
+};
+
+}  // namespace pliant

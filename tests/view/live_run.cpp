@@ -1,0 +1,99 @@
+// A simulation in its own thread: pause, single steps, speed, commands and failures.
+#include <pliant/view/live_run.h>
+
+#include <chrono>
+#include <limits>
+#include <thread>
+
+#include <pliant/scene/read_scene.h>
+
+#include "catch.h"
+
+namespace live_run_test {
+
+using namespace pliant;
+
+namespace {
+
+std::unique_ptr<Scene> ball_scene() {
+  Diagnostics diagnostics;
+  return parse_scene("scene", R"({"gravity": [0, 0, -1], "time": {"step": 0.001, "integrator": "rk4"},
+    "parts": [{"name": "ball", "shape": "sphere"}]})",
+                     {}, diagnostics);
+}
+
+/// Waits until a snapshot satisfies a condition, at most 20 s of wall time. Returns the snapshot.
+template <class Condition>
+std::shared_ptr<const Snapshot> wait_until(const LiveRun& run, Condition&& holds) {
+  for (int i = 0; i < 2000 && !holds(*run.snapshot()); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  REQUIRE(holds(*run.snapshot()));
+  return run.snapshot();
+}
+
+}  // namespace
+
+TEST_CASE("a live run plays, pauses, makes single steps and resets") {
+  const std::unique_ptr<Scene> scene = ball_scene();
+  LiveRun run(*scene);
+  CHECK(run.snapshot()->state.time() == 0);
+  CHECK_FALSE(run.snapshot()->running);
+  run.step_once();
+  wait_until(run, [](const Snapshot& now) { return now.state.time() > 0; });
+  CHECK(run.snapshot()->state.time() == Approx(0.017));  // 17 steps are nearest to 1/60 s
+  run.play();
+  wait_until(run, [](const Snapshot& now) { return now.state.time() > 0.1; });
+  run.pause();
+  wait_until(run, [](const Snapshot& now) { return !now.running; });
+  const double paused = run.snapshot()->state.time();
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  CHECK(run.snapshot()->state.time() == paused);
+  run.reset();
+  wait_until(run, [](const Snapshot& now) { return now.state.time() == 0; });
+}
+
+TEST_CASE("a live run keeps real time, or is as fast as it can") {
+  const std::unique_ptr<Scene> scene = ball_scene();
+  LiveRun run(*scene);
+  run.play();
+  const auto start = std::chrono::steady_clock::now();
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  const std::shared_ptr<const Snapshot> now = run.snapshot();
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  CHECK(now->state.time() <= wall + 0.05);  // never ahead; other processes may delay it
+  CHECK(now->state.time() > 0.2 * wall);
+  run.set_max_speed(std::numeric_limits<double>::infinity());
+  wait_until(run, [](const Snapshot& later) { return later.state.time() > 10; });
+}
+
+TEST_CASE("a snapshot has the drag, its ledger and the message of a command that fails") {
+  const std::unique_ptr<Scene> scene = ball_scene();
+  LiveRun run(*scene);
+  const Part& ball = *scene->body.find("ball");
+  run.post([&](LiveSimulation& live) { live.grab(point(ball, 0, 0), 1000, 10); });
+  run.post([](LiveSimulation& live) { live.drag_to({2, 0, 0}); });
+  run.play();
+  const auto now = wait_until(run, [](const Snapshot& s) { return s.dragging && s.state.time() > 0.5; });
+  CHECK(now->target == Vec3<double>(2, 0, 0));
+  CHECK(now->held.x() > 1);
+  CHECK(now->ledger.work[static_cast<int>(Work::anchors)] > 0);
+  run.post([](LiveSimulation& live) { live.release(); });
+  wait_until(run, [](const Snapshot& s) { return !s.dragging; });
+  run.post([](LiveSimulation&) { throw std::runtime_error("no"); });
+  CHECK(wait_until(run, [](const Snapshot& s) { return !s.refusal.empty(); })->refusal == "no");
+  CHECK_THROWS_WITH(run.wait_for([](LiveSimulation&) { throw std::runtime_error("never"); }), "never");
+}
+
+TEST_CASE("a step that fails stops a live run, and a reset starts it again") {
+  Diagnostics diagnostics;
+  const auto scene = parse_scene("scene", R"json({"gravity": [0, 0, "1 / max(0.1 - t, 0)"],
+    "time": {"step": 0.01, "end": 0.05}, "parts": [{"name": "ball", "shape": "sphere"}]})json",
+                                 {}, diagnostics);
+  LiveRun run(*scene);
+  run.play();
+  wait_until(run, [](const Snapshot& now) { return !now.failure.empty() && !now.running; });
+  run.reset();
+  wait_until(run, [](const Snapshot& now) { return now.failure.empty() && now.state.time() == 0; });
+}
+
+}  // namespace live_run_test

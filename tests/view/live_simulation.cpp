@@ -1,0 +1,246 @@
+// Drags and changed gravity of a live simulation: the motion is that of the same springs in the library, and
+// the saved scene repeats it to the last bit.
+#include <pliant/view/live_simulation.h>
+
+#include <cstring>
+#include <functional>
+
+#include <pliant/body/placed_point.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/scheduled_step.h>
+#include <pliant/scene/read_scene.h>
+#include <pliant/view/save_scene.h>
+
+#include "catch.h"
+
+namespace live_simulation_test {
+
+using namespace pliant;
+
+namespace {
+
+std::unique_ptr<Scene> parse(const std::string& text) {
+  Diagnostics diagnostics;
+  return parse_scene("scene", text, {}, diagnostics);
+}
+
+/// Returns a scene of an ellipsoid on a string, an arm on ball joints and a bar that bends, with these
+/// settings of time.
+std::string hung_scene(const std::string& time) {
+  return R"({"time": )" + time + R"(,
+  "parts": [
+    {"name": "egg", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}},
+    {"name": "arm", "shape": "capsule", "parameters": {"r": 0.05, "l": 0.3}, "position": [1, 0, 0]},
+    {"name": "hand", "shape": "capsule", "parameters": {"r": 0.05, "l": 0.3}, "position": [1, 0, -0.7]},
+    {"name": "bar", "shape": "box", "deformations": ["bend"], "position": [2, 0, 0], "beta": 0.01,
+     "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "bend.angle": {"rest": 0, "stiffness": 300}}}],
+  "joints": [
+    {"type": "string", "from": {"part": "egg", "at": {"u": 0, "v": 0}}, "to": {"world": [0, 0, 0.5]}, "length": 0.6},
+    {"type": "ball", "from": {"part": "arm", "at": {"u": 1.5707963267948966, "v": 0}}, "to": {"world": [1, 0, 0.35]}},
+    {"type": "ball", "from": {"part": "hand", "at": {"u": 1.5707963267948966, "v": 0}},
+     "to": {"part": "arm", "at": {"u": -1.5707963267948966, "v": 0}}}]
+})";
+}
+
+const char* const kBar = R"({"time": {"tolerance": 1e-9},
+  "parts": [{"name": "bar", "shape": "box", "deformations": ["bend"], "beta": 0.01,
+             "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "bend.angle": {"rest": 0, "stiffness": 300}}}]})";
+
+/// Returns a scene of boxes that fall on a floor, come to rest there and sleep, with these settings of time.
+std::string fallen_scene(const std::string& time, int boxes) {
+  std::string parts;
+  for (int i = 0; i < boxes; ++i)
+    parts += std::string(i > 0 ? "," : "") + R"({"name": "box )" + std::to_string(i) +
+             R"(", "shape": "box", "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.1}, "position": [)" +
+             std::to_string(0.5 * (i % 4)) + ", " + std::to_string(0.5 * (i / 4)) + ", 0.12]}";
+  return R"({"time": )" + time + R"(, "parts": [)" + parts +
+         R"(], "contact": {"friction": 0.5, "sleep": {"speed": 0.01, "after": 0.1}, "planes": [{"name": "floor"}]}})";
+}
+
+std::string jelly_scene(const std::string& time) {
+  return R"({"gravity": [0, 0, 0], "time": )" + time + R"(,
+  "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.2}, "density": 500,
+    "local": {"resolution": 2, "laws": [{"type": "neo_hookean", "E": 20000, "nu": 0.3}], "alpha": 1}}]})";
+}
+
+/// Drags a part to and fro between the intervals 20 and 50, and again between 70 and 90. k: number of the
+/// next interval.
+void drag(LiveSimulation& live, const std::string& part, int k) {
+  const Part& dragged = *live.scene().body.find(part);
+  if (k == 20 || k == 70) {
+    const DragSpring spring = drag_spring(dragged);
+    live.grab(point(dragged, 0.3, k == 20 ? 1.1 : -2.3), spring.stiffness, spring.damping);
+  }
+  if (live.is_dragging()) {
+    const Vec3<double> start = live.drags().back().path.last();
+    live.drag_to(start + 0.02 * Vec3<double>(std::sin(0.3 * k), std::cos(0.2 * k), k % 3 == 0 ? 0 : 0.5));
+  }
+  if (k == 50 || k == 90) live.release();
+}
+
+bool same_bits(const VecX<double>& a, const VecX<double>& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+/// Plays a scene live, saves it, and checks that the saved scene gives the same bits after each interval.
+/// act: the actions of the user before an interval.
+void check_replay(const std::string& text, int intervals,
+                  const std::function<void(LiveSimulation&, int)>& act) {
+  const std::unique_ptr<Scene> scene = parse(text);
+  std::vector<State> states;
+  std::string saved;
+  {
+    LiveSimulation live(*scene);
+    for (int k = 0; k < intervals; ++k) {
+      act(live, k);
+      live.advance();
+      states.push_back(live.simulation().state());
+    }
+    saved = saved_scene(live, ".", ".");
+  }
+  const std::unique_ptr<Scene> again = parse(saved);
+  const FrameSchedule schedule = schedule_of(*again);
+  Simulation simulation(again->body, again->integrator, 1, again->tolerance);
+  std::size_t next = 0;
+  while (!at_end(simulation, schedule)) {
+    scheduled_step(simulation, schedule);
+    if (simulation.time() < states[next].time() - 1e-9) continue;
+    INFO("interval " << next << ", t = " << simulation.time());
+    REQUIRE(simulation.time() == Approx(states[next].time()).epsilon(1e-12));
+    REQUIRE(same_bits(simulation.state().q, states[next].q));
+    REQUIRE(same_bits(simulation.state().v, states[next].v));
+    ++next;
+  }
+  CHECK(next == states.size());
+}
+
+/// Checks the replay of drags of a part.
+void check_drags(const std::string& text, const std::string& part, int intervals = 100) {
+  INFO("drags of " << part);
+  check_replay(text, intervals, [&](LiveSimulation& live, int k) { drag(live, part, k); });
+}
+
+}  // namespace
+
+TEST_CASE("a dragged point moves as the library moves it with the same spring") {
+  const std::unique_ptr<Scene> scene = parse(kBar);
+  LiveSimulation live(*scene);
+  std::vector<Vec3<double>> seen;
+  for (int k = 0; k < 60; ++k) {
+    drag(live, "bar", k);
+    live.advance();
+    if (k >= 20)
+      seen.push_back(
+          PlacedPoint(live.simulation().model(), live.drags()[0].spring->a).at(live.simulation().state()));
+  }
+  const Drag& drag = live.drags()[0];
+
+  // The same body with a spring that acts from the same time on, by a method with small fixed steps.
+  const std::unique_ptr<Scene> other = parse(kBar);
+  Point held = drag.spring->a;
+  held.part = other->body.find("bar");
+  TimeVector path;
+  for (std::size_t i = 0; i < 3; ++i)
+    path.component[i] = linear_key_frames(drag.path.component[i]->times(), drag.path.component[i]->values());
+  Spring& spring =
+      other->body.spring("hand", held, world(path), drag.spring->stiffness, drag.spring->damping);
+  spring.on = drag.spring->on;
+  spring.off = drag.spring->off;
+  Simulation simulation(other->body, "dop853", 1, 1e-10);
+  double worst = 0, travel = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const double t = live.time_after(static_cast<std::int64_t>(21 + k));
+    while (simulation.time() < t) simulation.step_up_to(t);
+    const Vec3<double> x = PlacedPoint(simulation.model(), held).at(simulation.state());
+    worst = std::max(worst, (x - seen[k]).norm());
+    travel = std::max(travel, (x - seen[0]).norm());
+  }
+  CHECK(travel > 0.05);
+  CHECK(worst <= 1e-6);
+}
+
+TEST_CASE("the ledger counts the work of a drag") {
+  const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-9})"));
+  LiveSimulation live(*scene);
+  double largest = 0, worst = 0;
+  for (int k = 0; k < 60; ++k) {
+    drag(live, "egg", k);
+    live.advance();
+    const Ledger ledger = live.ledger();
+    largest = std::max(largest, std::abs(ledger.work[static_cast<int>(Work::anchors)]));
+    worst = std::max(worst, std::abs(ledger.balance));
+  }
+  CHECK(largest > 0.1);
+  CHECK(worst <= 1e-6 * largest);
+}
+
+TEST_CASE("a saved scene repeats the drags to the last bit") {
+  const std::string tolerance = R"({"tolerance": 1e-6})", fixed = R"({"step": 0.002, "integrator": "rk4"})";
+  SECTION("rigid parts, a string and an elastic part, with a tolerance") {
+    check_drags(hung_scene(tolerance), "egg");
+    check_drags(hung_scene(tolerance), "hand");
+    check_drags(hung_scene(tolerance), "bar");
+  }
+  SECTION("with fixed steps") {
+    check_drags(hung_scene(fixed), "egg");
+    check_drags(hung_scene(fixed), "hand");
+    check_drags(hung_scene(R"({"step": 0.002, "integrator": "linearly_implicit"})"), "bar");
+  }
+  SECTION("contact and sleep") {
+    check_drags(fallen_scene(tolerance, 3), "box 1");
+    check_drags(fallen_scene(fixed, 3), "box 1");
+  }
+  SECTION("clusters") {
+    check_drags(fallen_scene(tolerance, 12), "box 5");
+  }
+  SECTION("local deformation") {
+    check_drags(jelly_scene(R"({"step": 0.002, "integrator": "linearly_implicit"})"), "jelly", 60);
+  }
+}
+
+TEST_CASE("changed gravity is repeated to the last bit") {
+  check_replay(fallen_scene(R"({"tolerance": 1e-6})", 3), 40, [](LiveSimulation& live, int k) {
+    if (k == 10) live.set_gravity({1, 0, -3});
+    if (k == 25) live.set_gravity({0, 0, -9.81});
+  });
+}
+
+TEST_CASE("changed rest values are repeated to the last bit") {
+  check_replay(kBar, 60, [](LiveSimulation& live, int k) {
+    REQUIRE(live.rest_values().size() == 1);
+    CHECK(live.rest_values()[0].parameter == "bend.angle");
+    if (k == 10) live.set_rest_value(0, 0.6);
+    if (k == 40) live.set_rest_value(0, -0.2);
+    CHECK_THROWS_WITH(live.set_rest_value(0, 1e6), test::has_text("out of range"));
+    drag(live, "bar", k);
+  });
+}
+
+TEST_CASE("a reset simulation repeats its first motion") {
+  const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
+  LiveSimulation live(*scene);
+  for (int k = 0; k < 30; ++k) live.advance();
+  const State first = live.simulation().state();
+  live.reset();
+  for (int k = 0; k < 40; ++k) {
+    drag(live, "hand", k);
+    live.advance();
+  }
+  live.reset();
+  CHECK(live.drags().empty());
+  CHECK(live.simulation().time() == 0);
+  for (int k = 0; k < 30; ++k) live.advance();
+  CHECK(same_bits(live.simulation().state().q, first.q));
+}
+
+TEST_CASE("only points of moving parts can be dragged") {
+  const std::unique_ptr<Scene> scene = parse(R"({"parts": [{"name": "wall", "shape": "box", "fixed": true},
+    {"name": "ball", "shape": "sphere", "position": [3, 0, 0]}]})");
+  LiveSimulation live(*scene);
+  CHECK_THROWS_WITH(live.grab(point(*scene->body.find("wall"), 0, 0), 1, 1), test::has_text("moving parts"));
+  CHECK_THROWS_WITH(live.grab(point(*scene->body.find("ball"), 0, 0), -1, 1), test::has_text("stiffness"));
+  CHECK_FALSE(live.is_dragging());
+}
+
+}  // namespace live_simulation_test
