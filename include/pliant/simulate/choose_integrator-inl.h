@@ -117,7 +117,7 @@ PLIANT_INLINE double evaluation_cost(const Part& part) {
 }
 
 PLIANT_INLINE bool has_stiffness(const Model& model) {
-  if (!model.springs().empty()) return true;
+  if (!model.springs().empty() || !model.drives().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
     const Part& part = *m.part;
     return m.q0 >= 0 && (m.local != nullptr || m.drag > 0 || part.continuum() != nullptr ||
