@@ -124,7 +124,11 @@ void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulati
     print_point(simulation, spring->a);
     std::cout << " to ";
     print_point(simulation, spring->b);
-    std::cout << ", " << spring->stiffness << " N/m, " << spring->damping << " N s/m\n";
+    if (spring->is_constant())
+      std::cout << ", " << spring->stiffness.constant() << " N/m, " << spring->damping.constant()
+                << " N s/m\n";
+    else
+      std::cout << ", a muscle\n";
   }
   for (const auto& force : scene.body.forces()) {
     std::cout << "force " << force->name << ": ";

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/body/stages/loads.h>
 
 namespace pliant {
 
@@ -13,8 +14,8 @@ namespace {
 /// empty text.
 class TermCheck {
  public:
-  TermCheck(const Model& model, double t, const Workspace<double>& work)
-      : model_(model), t_(t), work_(work) {}
+  explicit TermCheck(const Evaluation<double>& evaluation)
+      : evaluation_(evaluation), model_(evaluation.model()), t_(evaluation.t), work_(evaluation.work) {}
 
   std::string first_bad_term() const {
     for (const auto check : {&TermCheck::masses, &TermCheck::loads, &TermCheck::joints, &TermCheck::forces,
@@ -56,7 +57,12 @@ class TermCheck {
     for (const ForceModel& f : model_.forces())
       if (!force_at(f.at).allFinite()) return "the force '" + f.force->name + "'";
     for (const TorqueModel& m : model_.torques())
-      if (!m.torque->torque.value(t_).allFinite()) return "the torque '" + m.torque->name + "'";
+      if (!detail::torque_of(evaluation_, m).allFinite()) return "the torque '" + m.torque->name + "'";
+    for (const DriveModel& m : model_.drives()) {
+      const auto force = detail::force_of(evaluation_, m, detail::signal_value(evaluation_, m.on),
+                                          detail::signal_rate(evaluation_, m.on));
+      if (!std::isfinite(force.elastic + force.damping)) return "the force of drive '" + m.drive->name + "'";
+    }
     return {};
   }
   /// Stage 4: the rows of the joints.
@@ -109,6 +115,7 @@ class TermCheck {
     return work_.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)];
   }
 
+  const Evaluation<double>& evaluation_;
   const Model& model_;
   double t_;
   const Workspace<double>& work_;
@@ -123,7 +130,8 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!std::isfinite(v[i])) return "the velocity " + model_->velocity_name(static_cast<int>(i));
   accelerations(t, q, v, modes, work);
-  return TermCheck(*model_, t, work).first_bad_term();
+  const Evaluation<double> evaluation{*this, t, q, v, work, &modes};
+  return TermCheck(evaluation).first_bad_term();
 }
 
 }  // namespace pliant

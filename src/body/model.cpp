@@ -62,6 +62,7 @@ Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part
     joint_numbers_.push_back(static_cast<int>(j));
     add_joint(*body.joints()[j]);
   }
+  add_actuation();
   note_switch_times();
   share_joint_points();
   assign_side_offsets();
@@ -74,14 +75,12 @@ Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part
 }
 
 DisjointSets Model::connected_parts() const {
-  auto has = [&](int part) { return part >= 0 && parts_[static_cast<std::size_t>(part)].q0 >= 0; };
+  auto has = [&](int part) { return parts_[static_cast<std::size_t>(part)].q0 >= 0; };
   DisjointSets sets(parts_.size());
   for (const Island& island : islands_)
     for (const int i : island.parts) sets.unite(i, island.parts.front());
-  for (const SpringModel& spring : springs_)
-    if (has(spring.a.part) && has(spring.b.part)) sets.unite(spring.a.part, spring.b.part);
-  for (const TorqueModel& torque : torques_)
-    if (has(torque.part) && has(torque.against)) sets.unite(torque.part, torque.against);
+  for (const auto& [a, b] : load_connections_)
+    if (has(a) && has(b)) sets.unite(a, b);
   return sets;
 }
 
@@ -143,7 +142,7 @@ void Model::add_springs() {
   for (const auto& spring : body_->springs()) {
     if (!is_whole() && !moves(spring->a.part) && !moves(spring->b.part)) continue;
     const std::string what = "spring '" + spring->name + "'";
-    SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
+    SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what), {}};
     if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
     springs_.push_back(m);
   }
@@ -153,7 +152,7 @@ void Model::add_forces_and_torques() {
   for (const auto& force : body_->forces()) {
     if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
     if (!is_whole() && !moves(force->at.part)) continue;
-    forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
+    forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'"), {}});
   }
   for (const auto& torque : body_->torques()) {
     const std::string what = "torque '" + torque->name + "'";
@@ -161,8 +160,10 @@ void Model::add_forces_and_torques() {
     if (torque->against == torque->part)
       throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
     if (!is_whole() && !moves(torque->part) && !moves(torque->against)) continue;
-    torques_.push_back({torque.get(), number_of(*torque->part),
-                        torque->against == nullptr ? -1 : number_of(*torque->against)});
+    torques_.push_back({torque.get(),
+                        number_of(*torque->part),
+                        torque->against == nullptr ? -1 : number_of(*torque->against),
+                        {}});
   }
 }
 
@@ -184,21 +185,6 @@ void Model::evaluate_rigid_ports() {
   for (PartModel& m : parts_)
     if (m.n_s == 0 && !m.ports.empty())
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
-}
-
-void Model::mark_loaded_parts() {
-  for (const SpringModel& spring : springs_)
-    for (const PortRef& ref : {spring.a, spring.b})
-      if (ref.part >= 0) parts_[static_cast<std::size_t>(ref.part)].loaded = true;
-  for (const ForceModel& force : forces_) parts_[static_cast<std::size_t>(force.at.part)].loaded = true;
-  for (const TorqueModel& torque : torques_)
-    for (const int part : {torque.part, torque.against})
-      if (part >= 0) parts_[static_cast<std::size_t>(part)].loaded = true;
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    if (parts_[i].loaded) {
-      loaded_parts_.push_back(static_cast<int>(i));
-      if (parts_[i].island >= 0) islands_[static_cast<std::size_t>(parts_[i].island)].loaded = true;
-    }
 }
 
 void Model::make_rigid_islands() {

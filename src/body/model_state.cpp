@@ -34,6 +34,9 @@ State Model::initial_state() const {
   for (const JointModel& joint : joints_)
     state.joints.push_back(joint.joint->acts_at(0) ? JointMode::closing : JointMode::off);
   state.at_rest.assign(n_resting(), 0);
+  state.inputs.resize(static_cast<Eigen::Index>(body_->inputs().size()));
+  for (std::size_t k = 0; k < body_->inputs().size(); ++k)
+    state.inputs[static_cast<Eigen::Index>(k)] = body_->inputs()[k].initial;
   for (const PartModel& m : parts_) {
     if (m.q0 < 0) continue;
     const Part& part = *m.part;

@@ -99,6 +99,10 @@ TableColumns TrajectoryTable::columns() const {
   for (const Track& track : scene_->tracks)
     add_axes(tracked, "track." + track.name, "m", "tracked point, world");
   table.push_back(table_group(std::move(tracked)));
+  std::vector<Column> sensors;
+  for (const auto& sensor : scene_->body.sensors())
+    sensors.push_back({"sensor." + sensor->name, "", "value of the sensor"});
+  table.push_back(table_group(std::move(sensors)));
   if (parts_shown_)
     table.push_back(
         {ColumnGroup::Each::joint, "trajectory", [this](std::size_t j) { return joint_columns(j); }});
@@ -125,6 +129,8 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   numbers.assign(1, state.time());
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
   for (const PlacedPoint& point : tracked_) add_vector(numbers, point.at(state));
+  const VecX<double> sensors = simulation_->dynamics().sensor_values(state.time(), state, work);
+  numbers.insert(numbers.end(), sensors.data(), sensors.data() + sensors.size());
   for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
     const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work);
     add_vector(numbers, wrench.force);

@@ -50,7 +50,7 @@ bool is_letter(char c) {
 /// Recursive descent: each function parses one rule of the grammar (formula.h) and appends its instructions.
 class Parser {
  public:
-  explicit Parser(std::string_view text) : text_(text) {}
+  Parser(std::string_view text, const Formula::Names& names) : text_(text), names_(names) {}
 
   std::vector<Instruction> parse() {
     if (text_.size() > Formula::kMaxLength) {
@@ -135,14 +135,15 @@ class Parser {
     const char c = next();
     if (is_digit(c) || c == '.') {
       number();
-    } else if (is_letter(c)) {
+    } else if (is_letter(c) || (c == '\'' && names_)) {
       name();
     } else if (accept('(')) {
       const std::size_t opening = at_ - 1;
       sum();
       close(opening);
     } else {
-      fault_expected("a number, t, pi, a function or \"(\"");
+      fault_expected(names_ ? "a number, t, pi, a quantity, a function or \"(\""
+                            : "a number, t, pi, a function or \"(\"");
     }
     skip_spaces();
   }
@@ -161,8 +162,13 @@ class Parser {
 
   void name() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
-    const std::string word(text_.substr(begin, at_ - begin));
+    const bool quoted = text_[at_] == '\'';
+    const std::string word = quoted ? quoted_word() : plain_word();
+    const std::string quantity = names_ ? after_dot() : std::string();
+    if (quoted || !quantity.empty()) {
+      if (!variable(word, quantity, begin)) throw FormulaError(begin, "unknown name \"" + word + "\"");
+      return;
+    }
     const bool call = next() == '(';
     if (word == "t" || word == "pi") {
       if (call) throw FormulaError(begin, "\"" + word + "\" is not a function; write " + word + "*(...)");
@@ -175,6 +181,7 @@ class Parser {
         return arguments_of(entry, begin);
       }
     }
+    if (!call && names_ && variable(word, quantity, begin)) return;
     std::vector<std::string> names;
     if (!call) names = {"t", "pi"};
     for (const Entry& entry : kFunctions) names.emplace_back(entry.name);
@@ -183,6 +190,44 @@ class Parser {
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
     throw FormulaError(begin, std::string(call ? "unknown function \"" : "unknown name \"") + word + "\"" +
                                   (hint.empty() ? "; expected one of " + known : hint));
+  }
+
+  std::string plain_word() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    return std::string(text_.substr(begin, at_ - begin));
+  }
+  /// Reads the text between two apostrophes.
+  std::string quoted_word() {
+    const std::size_t end = text_.find('\'', at_ + 1);
+    if (end == std::string_view::npos)
+      throw FormulaError(text_.size(),
+                         "expected \"'\" for the \"'\" at character " + std::to_string(at_ + 1));
+    const std::string word(text_.substr(at_ + 1, end - at_ - 1));
+    at_ = end + 1;
+    return word;
+  }
+  /// Reads a dot and the words with dots after it. Returns these words; empty if there is no dot.
+  std::string after_dot() {
+    std::string words;
+    while (at_ + 1 < text_.size() && text_[at_] == '.' && is_letter(text_[at_ + 1])) {
+      ++at_;
+      words += (words.empty() ? "" : ".") + plain_word();
+    }
+    return words;
+  }
+  /// Appends the instruction of a named quantity. Returns false if its name is unknown. place: the byte of
+  /// the text at which the name begins.
+  bool variable(const std::string& owner, const std::string& quantity, std::size_t place) {
+    int number = 0;
+    try {
+      number = names_(owner, quantity);
+    } catch (const std::invalid_argument& fault) {
+      throw FormulaError(place, fault.what());
+    }
+    if (number < 0) return false;
+    emit({Code::kVariable, static_cast<double>(number)}, place);
+    return true;
   }
 
   void arguments_of(const Entry& entry, std::size_t place) {
@@ -227,7 +272,7 @@ class Parser {
     }
     std::array<Taylor, 3> x;
     for (std::size_t i = 0; i < n; ++i) x[n - 1 - i] = from_top(i).number;
-    const double value = detail::formula_program::apply(instruction, Taylor(), x.data()).v;
+    const double value = detail::formula_program::apply<Taylor>(instruction, Taylor(), nullptr, x.data()).v;
     if (!std::isfinite(value)) throw FormulaError(place, "the value here is not a finite number");
     program_.resize(program_.size() - n);
     program_.push_back({Code::kNumber, value});
@@ -281,6 +326,7 @@ class Parser {
   }
 
   std::string_view text_;
+  const Formula::Names& names_;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::vector<Instruction> program_;
@@ -302,11 +348,12 @@ const std::vector<Formula::Function>& Formula::functions() {
   return list;
 }
 
-Formula::Formula(const std::string& text) : program_(Parser(text).parse()) {
+Formula::Formula(const std::string& text, const Names& names) : program_(Parser(text, names).parse()) {
   int height = 0;
   for (const Instruction& instruction : program_) {
     height += 1 - arguments(instruction.code);
     stack_ = std::max(stack_, height);
+    has_variables_ = has_variables_ || instruction.code == Code::kVariable;
     has_branches_ = has_branches_ || detail::formula_program::has_branches(instruction.code);
   }
   if (stack_ > detail::formula_program::kLargeStack)

@@ -44,6 +44,12 @@ int Parameters::find(const std::string& name) const {
   return -1;
 }
 
+int Parameters::dynamic_number(const std::string& name) const {
+  for (int k = 0; k < n_dynamic(); ++k)
+    if (moving(k).name == name) return k;
+  return -1;
+}
+
 std::string Parameters::names() const {
   std::string all;
   for (const Parameter& p : all_) all += (all.empty() ? "" : " ") + p.name;

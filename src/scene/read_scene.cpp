@@ -18,11 +18,13 @@
 #include "scene/reader/coloring_reader.h"
 #include "scene/reader/contact_reader.h"
 #include "scene/reader/direction_reader.h"
+#include "scene/reader/drive_reader.h"
 #include "scene/reader/joint_reader.h"
 #include "scene/reader/obstacle_reader.h"
 #include "scene/reader/part_reader.h"
 #include "scene/reader/point_reader.h"
 #include "scene/reader/scene_warnings.h"
+#include "scene/reader/state_reader.h"
 #include "scene/reader/time_reader.h"
 #include "scene_faults.h"
 
@@ -68,13 +70,13 @@ class SceneReader {
     for (const Reader& r : root_.objects("parts")) read_part(r);
     const PointReader points(parts_, scene_->end, faults_);
     scene_->body.stabilization = read_stabilization(root_.object("stabilization"), faults_);
-    for (const Reader& r : named("joints")) read_joint(r, points, faults_, scene_->body);
+    for (const Reader& r : named("joints"))
+      if (const Joint* joint = read_joint(r, points, faults_, scene_->body)) joints_.emplace_back(r, joint);
     if (root_.given("contact"))
       read_contact(root_.object("contact"), parts_, times(), folder_, faults_, *scene_);
     for (const Reader& r : named("springs")) read_spring(r, points);
-    for (const Reader& r : named("forces")) read_force(r, points);
-    for (const Reader& r : named("torques")) read_torque(r, points);
     for (const Reader& r : named("tracks")) read_track(r, points);
+    read_actuation(points);
     read_coloring();
     if (faults_.errors() == 0) add_warnings(*scene_, root_, faults_);
     return scene;
@@ -219,7 +221,8 @@ class SceneReader {
       return faults_.place(r.json(), "both ends are points of the world; expected at least one on a part");
     if (from->part == to->part && same_point(from->material, to->material))
       return faults_.place(r.at("to"), "this is the same point as \"from\"; expected another");
-    const double length = r.number("rest_length");
+    const JsonValue& rest_length = r.at("rest_length");
+    const double length = rest_length.is_number() ? rest_length.number() : 0;
     if (length > 0 && (position_at_start(*from) - position_at_start(*to)).norm() <= 1e-9 * length)
       return faults_.value(
           r.at("rest_length"),
@@ -228,22 +231,55 @@ class SceneReader {
     if (r.given("off") && !(r.number("on") < r.number("off")))
       return faults_.value(r.at("off"),
                            "expected a time after \"on\", which is " + brief(r.number("on")) + " s");
-    Spring& spring = scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
-                                         r.number("stiffness"), r.number("damping"), length);
+    Spring& spring = scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to, 0);
     if (r.given("on")) spring.on = r.number("on");
     if (r.given("off")) spring.off = r.number("off");
+    springs_.emplace_back(r, &spring);
+  }
+  /// Reads all values that may read the state: their names must be known before.
+  void read_actuation(const PointReader& points) {
+    for (const auto& [r, joint] : joints_) read_joint_limits(r, *joint, faults_, scene_->body);
+    const StateReader states(*scene_, faults_);
+    for (const Reader& r : named("sensors"))
+      if (r.complete())
+        if (const auto value = states.function(r.at("value"))) scene_->body.sensor(r.text("name"), *value);
+    for (const auto& [r, spring] : springs_) read_spring_law(r, states, *spring);
+    for (const Reader& r : named("forces")) read_force(r, points, states);
+    for (const Reader& r : named("torques")) read_torque(r, points, states);
+    for (const auto& [r, joint] : joints_)
+      if (r.json().find("drive") != nullptr && !r.faulty("drive"))
+        read_joint_drive(r.object("drive"), *joint, states, scene_->body);
+    for (const Reader& r : root_.objects("parts")) read_parameter_drives(r, states);
+  }
+  static void read_spring_law(const Reader& r, const StateReader& states, Spring& spring) {
+    for (const auto& [key, function] :
+         {std::pair<const char*, StateFunction*>("stiffness", &spring.stiffness),
+          {"damping", &spring.damping},
+          {"rest_length", &spring.rest_length}})
+      if (const auto read = states.function(r.at(key))) *function = *read;
+  }
+  void read_parameter_drives(const Reader& r, const StateReader& states) {
+    const auto named = r.given("name") ? parts_.find(r.text("name")) : parts_.end();
+    if (named == parts_.end() || named->second.part == nullptr) return;
+    const Part& part = *named->second.part;
+    for (const auto& [name, parameter] : r.entries("parameters")) {
+      const JsonValue* drive = parameter.json().is_object() ? parameter.json().find("drive") : nullptr;
+      if (drive == nullptr || parameter.faulty("drive") || part.parameters().dynamic_number(name) < 0)
+        continue;
+      read_drive(parameter.object("drive"), states, scene_->body.drive(part.name() + "." + name, part, name));
+    }
   }
   TimeReader times() { return {scene_->end, faults_}; }
   static Frame frame(const Reader& r) { return r.text("frame") == "body" ? Frame::body : Frame::world; }
-  void read_force(const Reader& r, const PointReader& points) {
+  void read_force(const Reader& r, const PointReader& points, const StateReader& states) {
     const std::optional<Point> at = points.on_part(r);
-    const std::optional<TimeVector> force = times().vector(r, "force", Needs::value);
+    const std::optional<StateVector> force = states.vector(r, "force");
     if (at && force)
       scene_->body.force(name_of(r, "force", scene_->body.forces().size()), *at, *force, frame(r));
   }
-  void read_torque(const Reader& r, const PointReader& points) {
+  void read_torque(const Reader& r, const PointReader& points, const StateReader& states) {
     const Part *part = points.part(r), *against = points.part(r, "against");
-    const std::optional<TimeVector> torque = times().vector(r, "torque", Needs::value);
+    const std::optional<StateVector> torque = states.vector(r, "torque");
     if (part == nullptr) return;
     if (part == against)
       return faults_.value(r.at("against"), "this is the same part as \"part\"; expected another");
@@ -280,6 +316,8 @@ class SceneReader {
   const Reader root_;
   std::map<std::string, Reader> materials_;
   std::map<std::string, NamedPart> parts_;
+  std::vector<std::pair<Reader, const Joint*>> joints_;
+  std::vector<std::pair<Reader, Spring*>> springs_;
   Scene* scene_ = nullptr;
 };
 

@@ -19,6 +19,15 @@ void check_formula(const JsonValue& value, const ReportAt& report) {
   }
 }
 
+/// As check_formula(), but the formula may contain names. A reader checks the names.
+void check_state_formula(const JsonValue& value, const ReportAt& report) {
+  try {
+    Formula formula(value.string(), [](const std::string&, const std::string&) { return 0; });
+  } catch (const FormulaError& e) {
+    report(value, e.reason(), e.offset());
+  }
+}
+
 /// Returns the rule for key frames: their times increase, and there are as many values as times. values: the
 /// JSON key of the values.
 Check key_rule(const char* values) {
@@ -42,6 +51,10 @@ Type times() {
 
 Type formula() {
   return text(1).expecting("a formula of t in quotes").checked(check_formula);
+}
+
+Type state_formula() {
+  return text(1).expecting("a formula of t and of named quantities in quotes").checked(check_state_formula);
 }
 
 Field interpolation() {
@@ -107,6 +120,22 @@ Type time_vector(std::string unit) {
                             " or formulas of t in quotes, or key frames {\"t\": [...], \"points\": [...]}";
   Type each = array(time_function(std::move(unit)), 3, 3);
   return one_of({each.expecting(words), point_key_frames()}).expecting(words).defined_as("time_vector");
+}
+
+Type state_function(std::string unit, Range range) {
+  const std::string words =
+      "a number" + in(unit) +
+      ", a formula of t and of named quantities in quotes, or key frames {\"t\": [...], "
+      "\"y\": [...]}";
+  return one_of({number(range, std::move(unit)), state_formula(), key_frames()}).expecting(words);
+}
+
+Type state_vector(std::string unit) {
+  const std::string words =
+      "[x, y, z] of numbers" + in(unit) +
+      " or formulas of t and of named quantities in quotes, or key frames {\"t\": [...], \"points\": [...]}";
+  Type each = array(state_function(std::move(unit), unbounded()), 3, 3);
+  return one_of({each.expecting(words), point_key_frames()}).expecting(words).defined_as("state_vector");
 }
 
 }  // namespace schema

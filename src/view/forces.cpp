@@ -1,6 +1,7 @@
 #include <pliant/view/forces.h>
 
 #include <pliant/body/placed_point.h>
+#include <pliant/body/stages/loads.h>
 #include <pliant/contact/contact_stepping.h>
 
 namespace pliant {
@@ -32,22 +33,21 @@ std::vector<ForceArrow> joint_forces(const Simulation& simulation) {
 std::vector<ForceArrow> load_forces(const Simulation& simulation) {
   std::vector<ForceArrow> arrows;
   const Model& model = simulation.model();
+  if (model.loaded_parts().empty()) return arrows;
   const State& state = simulation.state();
+  Workspace<double> work;
+  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
+  const Evaluation<double> e{simulation.dynamics(), state.time(), state.q, state.v, work, &state};
   for (const SpringModel& m : model.springs()) {
-    const Spring& spring = *m.spring;
-    if (!spring.acts_at(state.time())) continue;
-    const Vec3<double> a = PlacedPoint(model, spring.a).at(state), b = PlacedPoint(model, spring.b).at(state);
-    const double length = (b - a).norm();
-    if (!(length > 0)) continue;
-    const Vec3<double> pull = spring.stiffness * (length - spring.rest_length) / length * (b - a);
-    if (m.a.part >= 0) arrows.push_back({a, pull});
-    if (m.b.part >= 0) arrows.push_back({b, -pull});
+    if (!m.spring->acts_at(state.time())) continue;
+    const auto a = detail::motion_of(e, m.a, m.spring->a), b = detail::motion_of(e, m.b, m.spring->b);
+    const Vec3<double> pull = detail::force_of(e, m, a, b).elastic;
+    if (m.a.part >= 0) arrows.push_back({a.x, pull});
+    if (m.b.part >= 0) arrows.push_back({b.x, -pull});
   }
   for (const ForceModel& m : model.forces()) {
-    if (m.force->custom) continue;
-    Vec3<double> force = m.force->force.value(state.time());
-    if (m.force->frame == Frame::body) force = model.orientation(state, m.at.part) * force;
-    arrows.push_back({PlacedPoint(model, m.force->at).at(state), force});
+    const auto at = detail::motion_of(e, m.at, m.force->at);
+    arrows.push_back({at.x, detail::force_of(e, m, at)});
   }
   return arrows;
 }

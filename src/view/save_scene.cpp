@@ -38,8 +38,8 @@ Json spring_of(const Drag& drag) {
   Json json = {{"name", spring.name},
                {"from", {{"part", spring.a.part->name()}, {"at", std::move(place)}}},
                {"to", {{"world", key_frames_of(drag.path)}}},
-               {"stiffness", spring.stiffness},
-               {"damping", spring.damping},
+               {"stiffness", spring.stiffness.constant()},
+               {"damping", spring.damping.constant()},
                {"on", spring.on}};
   if (std::isfinite(spring.off)) json["off"] = spring.off;
   return json;

@@ -1,5 +1,5 @@
 // Formulas: values, exact derivatives, precedence, and every error with its position.
-#include <pliant/math/formula.h>
+#include <pliant/math/formula-inl.h>
 
 #include <cmath>
 #include <functional>
@@ -11,8 +11,10 @@
 
 namespace formula_test {
 
+using pliant::Dual;
 using pliant::Formula;
 using pliant::FormulaError;
+using pliant::Taylor2;
 using Real = long double;
 
 namespace {
@@ -243,6 +245,52 @@ TEST_CASE("every listed function can be called and has a meaning") {
     CHECK(fault(call + ")") == "no fault");
     CHECK_FALSE(f.meaning.empty());
   }
+}
+
+TEST_CASE("a formula reads named quantities, with exact derivatives on dual numbers") {
+  std::vector<std::string> read;
+  const Formula::Names names = [&](const std::string& owner, const std::string& quantity) {
+    if (owner == "unknown") return -1;
+    if (quantity == "none") throw std::invalid_argument("no such quantity");
+    read.push_back(owner + ":" + quantity);
+    return static_cast<int>(read.size()) - 1;
+  };
+  const Formula formula("sin(ball.x) * 'left wing'.bend.angle^2 + t * abs(height) + tan(t.x) ^ ball.x",
+                        names);
+  CHECK(read == std::vector<std::string>{"ball:x", "left wing:bend.angle", "height:", "t:x", "ball:x"});
+  CHECK(formula.has_variables());
+  CHECK_FALSE(Formula("sin(t)", names).has_variables());
+  const std::vector<double> at{0.3, 1.2, -0.7, 0.4, 0.3}, along{0.5, -0.2, 0.1, 0.9, 0.5};
+  const double t = 0.6;
+  const double expected = std::sin(0.3) * 1.44 + 0.6 * 0.7 + std::pow(std::tan(0.4), 0.3);
+  const double at_state = formula.value(t, at.data());
+  CHECK(at_state == Approx(expected).epsilon(1e-15));
+  std::vector<Dual<1>> dual;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    dual.emplace_back(at[i]);
+    dual.back().d[0] = along[i];
+  }
+  const Dual<1> derivative = formula.value(Dual<1>(t), dual.data());
+  CHECK(derivative.v == at_state);
+  auto moved = [&](double e) {
+    std::vector<double> x = at;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += e * along[i];
+    return formula.value(t, x.data());
+  };
+  CHECK(derivative.d[0] == Approx((moved(1e-5) - moved(-1e-5)) / 2e-5).epsilon(1e-8));
+  CHECK(
+      formula.value<Taylor2<double>>({t, 1.0, 0.0}, std::vector<Taylor2<double>>(at.begin(), at.end()).data())
+          .d == Approx(0.7));
+  try {
+    Formula("1 + ball.none", names);
+    FAIL("the name is not reported");
+  } catch (const FormulaError& fault) {
+    CHECK(fault.offset() == 4);
+    CHECK(fault.reason() == "no such quantity");
+  }
+  CHECK_THROWS_AS(Formula("unknown", names), FormulaError);
+  CHECK_THROWS_AS(Formula("'ball.x", names), FormulaError);
+  CHECK_THROWS_AS(Formula("ball.x"), FormulaError);
 }
 
 }  // namespace formula_test

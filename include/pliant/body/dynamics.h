@@ -112,6 +112,9 @@ class Dynamics {
   }
   /// Returns the ledger of the coordinates and velocities of a state at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
+  /// Returns the values of the sensors of the model. work: as accelerations(t, ...) or ledger(t, ...) left
+  /// it.
+  VecX<double> sensor_values(double t, const State& state, Workspace<double>& work) const;
   /// Evaluates the accelerations and returns the name of the first term that is not finite, in the order of
   /// the evaluation; an empty text if all terms are finite. If an entry of q or v is not finite, returns the
   /// name of the first of these entries, without an evaluation.
@@ -125,6 +128,7 @@ class Dynamics {
   /// Adds the energies of an evaluated part, or of a spring, to the ledger.
   void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
   void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;
+  void add_energy(const DriveModel& drive, const Evaluation<double>& e, Ledger& ledger) const;
   /// Sets the modes of the joints of an island, and computes frames and attachment points of its parts that
   /// are fixed or have a prescribed motion.
   void place_anchors(double t, const VecX<double>& q, const VecX<double>& v,

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include <pliant/body/dynamics.h>
 #include <pliant/body/stages/part_stages.h>
+#include <pliant/body/stages/signals.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {
@@ -37,6 +39,14 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Wo
   ledger.springs += s.spring->energy(position(s.a, s.spring->a), position(s.b, s.spring->b));
 }
 
+PLIANT_INLINE void Dynamics::add_energy(const DriveModel& m, const Evaluation<double>& e,
+                                        Ledger& ledger) const {
+  if (!m.drive->is_passive()) return;
+  double error = m.drive->target.constant() - detail::signal_value(e, m.on);
+  if (m.drive->angle) error -= 2 * kPi * std::round(error / (2 * kPi));
+  ledger.springs += 0.5 * m.drive->stiffness.constant() * error * error;
+}
+
 PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v,
                                       const std::vector<int>& parts, Workspace<double>& work) const {
   evaluate_masses(q, v, parts, work);
@@ -54,6 +64,19 @@ PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const Vec
         detail::evaluate_positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], t, q, v,
                                            work.parts[static_cast<std::size_t>(ref.part)]);
     add_energy(t, spring, work, ledger);
+  }
+  if (model_->drives().empty()) return ledger.energy();
+  const Evaluation<double> e{*this, t, q, v, work};
+  detail::forget_coordinates(e);
+  for (const DriveModel& drive : model_->drives()) {
+    std::vector<int> read;
+    model_->append_parts(drive.on, read);
+    if (std::none_of(read.begin(), read.end(), [&](int i) { return is_listed({i, 0}); })) continue;
+    for (const int i : read)
+      if (i >= 0 && !is_listed({i, 0}))
+        detail::evaluate_positions<double>(model_->parts()[static_cast<std::size_t>(i)], t, q, v,
+                                           work.parts[static_cast<std::size_t>(i)]);
+    add_energy(drive, e, ledger);
   }
   return ledger.energy();
 }
@@ -80,7 +103,18 @@ PLIANT_INLINE Ledger Dynamics::ledger(double t, const State& state, Workspace<do
     ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);
   }
   for (const SpringModel& spring : model_->springs()) add_energy(t, spring, work, ledger);
+  for (const DriveModel& drive : model_->drives())
+    add_energy(drive, {*this, t, state.q, state.v, work}, ledger);
   return ledger;
+}
+
+PLIANT_INLINE VecX<double> Dynamics::sensor_values(double t, const State& state,
+                                                   Workspace<double>& work) const {
+  const Evaluation<double> e{*this, t, state.q, state.v, work};
+  VecX<double> values(static_cast<Eigen::Index>(model_->sensors().size()));
+  for (std::size_t k = 0; k < model_->sensors().size(); ++k)
+    values[static_cast<Eigen::Index>(k)] = detail::value_of(e, model_->sensors()[k]);
+  return values;
 }
 
 }  // namespace pliant

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/constraint/rigid_island.h>
@@ -38,7 +39,7 @@ struct PartModel {
   int island = -1;  ///< number of its island; -1: no joints or no coordinates
   int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none
   int limit0;                      ///< first entry in State::at_limit
-  bool loaded = false;             ///< whether springs, forces or torques act on it
+  bool loaded = false;             ///< whether loads act on it, or read its state
   bool actuated = false;           ///< whether a rest value of a dynamic parameter changes in time
   const LocalDeformation* local;   ///< nullptr for a part without local deformation
   const PrescribedMotion* motion;  ///< nullptr for a part without prescribed motion
@@ -79,18 +80,44 @@ struct PortRef {
   int port = -1;
 };
 
+/// A signal of a formula, with its places in the model.
+struct SignalModel {
+  const Signal* signal;
+  int part = -1;   ///< number of its part; -1: none
+  PortRef a, b;    ///< attachments of its points
+  int place = -1;  ///< number of its coordinate or sensor; -1: none
+};
+/// A function of time and state, with its signals.
+struct FunctionModel {
+  const StateFunction* function = nullptr;
+  std::vector<SignalModel> signals;  ///< empty if the function does not read the state
+};
+struct CoordinateModel {
+  const Joint* coordinate;
+  std::vector<PortRef> at;  ///< attachment of each of its points
+};
+struct DriveModel {
+  const Drive* drive;
+  SignalModel on;
+  FunctionModel target, target_rate, stiffness, damping, force;
+};
+
 struct SpringModel {
   const Spring* spring;
   PortRef a, b;
+  /// Stiffness, damping and rest length, if one of them is not constant; else empty.
+  std::vector<FunctionModel> functions;
 };
 struct ForceModel {
   const PointForce* force;
   PortRef at;
+  std::vector<FunctionModel> components;  ///< of the force, if it reads the state; else empty
 };
 struct TorqueModel {
   const Torque* torque;
   int part;
-  int against;  ///< part with the opposite torque; -1: none
+  int against;                            ///< part with the opposite torque; -1: none
+  std::vector<FunctionModel> components;  ///< of the torque, if it reads the state; else empty
 };
 
 /// A side of a joint on a part with coordinates. A joint with both sides on the same part has one JointSide.
@@ -132,7 +159,7 @@ struct Island {
   std::vector<int> anchors;  ///< parts without coordinates at its joints
   std::vector<int> joints;   ///< joints that are equations, C = 0
   std::vector<int> strings;  ///< one-sided joints, C >= 0
-  bool loaded = false;       ///< whether springs, forces or torques act on any of its parts
+  bool loaded = false;       ///< whether loads act on any of its parts, or read their state
   std::vector<int> first;    ///< first entry of each part in the vector of the velocities of the island
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< number of rows of `joints`
@@ -164,7 +191,18 @@ class Model {
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
   const std::vector<TorqueModel>& torques() const { return torques_; }
-  /// Numbers of the parts that springs, forces or torques act on.
+  const std::vector<DriveModel>& drives() const { return drives_; }
+  const std::vector<CoordinateModel>& coordinates() const { return coordinates_; }
+  /// The sensors, each with its number in the body. A model of some parts has the sensors of these parts.
+  const std::vector<FunctionModel>& sensors() const { return sensors_; }
+  const std::vector<int>& sensor_numbers() const { return sensor_numbers_; }
+  /// Pairs of parts that a load connects: it acts on both, or acts on one and reads the state of the other.
+  const std::vector<std::pair<int, int>>& load_connections() const { return load_connections_; }
+  /// Appends the numbers of the parts that a function or signal reads, also by sensors and coordinates. The
+  /// numbers may be repeated; -1 stands for the world.
+  void append_parts(const FunctionModel& function, std::vector<int>& parts) const;
+  void append_parts(const SignalModel& signal, std::vector<int>& parts) const;
+  /// Numbers of the parts that loads (springs, forces, torques, drives) act on or read.
   const std::vector<int>& loaded_parts() const { return loaded_parts_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
@@ -257,6 +295,16 @@ class Model {
   void add_springs();
   void add_forces_and_torques();
   void add_joint(const Joint& joint);
+  /// Adds coordinates, sensors and drives, and resolves the functions of all loads.
+  void add_actuation();
+  void add_coordinates();
+  void add_sensors();
+  void add_drives();
+  FunctionModel resolve(const StateFunction& function, const std::string& what);
+  SignalModel resolve(const Signal& signal, const std::string& what);
+  /// Calls act(parts) for each load with the numbers of the parts that it acts on and reads.
+  template <class Act>
+  void for_each_load(Act&& act) const;
   /// Adds a port for a point and returns its attachment. what: the load or joint of the point, for messages.
   PortRef attach(const Point& point, const std::string& what);
   void note_switch_times();
@@ -281,6 +329,11 @@ class Model {
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
   std::vector<TorqueModel> torques_;
+  std::vector<DriveModel> drives_;
+  std::vector<CoordinateModel> coordinates_;
+  std::vector<FunctionModel> sensors_;
+  std::vector<int> sensor_numbers_;
+  std::vector<std::pair<int, int>> load_connections_;
   std::vector<int> loaded_parts_, lone_parts_, driven_joints_;
   std::vector<JointModel> joints_;
   std::vector<Island> islands_;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <pliant/body/actuation/slider_position.h>
 #include <pliant/body/joints/ball.h>
 #include <pliant/body/joints/joint_registry.h>
 #include <pliant/body/multibody.h>
@@ -20,20 +21,20 @@ PLIANT_INLINE Part& MultiBody::add(std::unique_ptr<Part> part) {
   return *parts_.back();
 }
 
-PLIANT_INLINE Spring& MultiBody::spring(std::string name, Point a, Point b, double stiffness, double damping,
-                                        double rest_length) {
-  if (!(stiffness >= 0) || !(damping >= 0) || !(rest_length >= 0) ||
-      !std::isfinite(stiffness + damping + rest_length))
-    throw std::invalid_argument("spring '" + name +
-                                "': stiffness, damping and rest length must be finite numbers >= 0");
+PLIANT_INLINE Spring& MultiBody::spring(std::string name, Point a, Point b, StateFunction stiffness,
+                                        StateFunction damping, StateFunction rest_length) {
+  for (const StateFunction* number : {&stiffness, &damping, &rest_length})
+    if (number->is_constant() && (!(number->constant() >= 0) || !std::isfinite(number->constant())))
+      throw std::invalid_argument("spring '" + name +
+                                  "': stiffness, damping and rest length must be finite numbers >= 0");
   springs_.push_back(std::make_unique<Spring>());
   Spring& spring = *springs_.back();
   spring.name = std::move(name);
   spring.a = std::move(a);
   spring.b = std::move(b);
-  spring.stiffness = stiffness;
-  spring.damping = damping;
-  spring.rest_length = rest_length;
+  spring.stiffness = std::move(stiffness);
+  spring.damping = std::move(damping);
+  spring.rest_length = std::move(rest_length);
   return spring;
 }
 
@@ -43,7 +44,7 @@ PLIANT_INLINE void MultiBody::remove(const Spring& spring) {
                  springs_.end());
 }
 
-PLIANT_INLINE PointForce& MultiBody::force(std::string name, Point at, TimeVector force, Frame frame) {
+PLIANT_INLINE PointForce& MultiBody::force(std::string name, Point at, StateVector force, Frame frame) {
   forces_.push_back(std::make_unique<PointForce>(
       PointForce{std::move(name), std::move(at), std::move(force), frame, nullptr}));
   return *forces_.back();
@@ -57,10 +58,77 @@ PLIANT_INLINE PointForce& MultiBody::force(
   return *forces_.back();
 }
 
-PLIANT_INLINE Torque& MultiBody::torque(std::string name, const Part& part, TimeVector torque, Frame frame) {
+PLIANT_INLINE Torque& MultiBody::torque(std::string name, const Part& part, StateVector torque, Frame frame) {
   torques_.push_back(
       std::make_unique<Torque>(Torque{std::move(name), &part, std::move(torque), frame, nullptr}));
   return *torques_.back();
+}
+
+PLIANT_INLINE const Joint& MultiBody::coordinate(const Joint& joint, const BallAxes& ball) {
+  for (const std::unique_ptr<Joint>& known : coordinates_)
+    if (known->name() == joint.name()) return *known;
+  for (const Point& point : joint.points())
+    if (point.part != nullptr) prepare(*parts_[static_cast<std::size_t>(index(*point.part))]);
+  coordinates_.push_back(make_coordinate(joint, ball));
+  return *coordinates_.back();
+}
+
+PLIANT_INLINE void MultiBody::add_limits(const Joint& joint, std::vector<std::unique_ptr<Joint>> limits) {
+  for (std::unique_ptr<Joint>& limit : limits) {
+    limit->during(joint.on(), joint.off());
+    join(std::move(limit));
+  }
+}
+
+PLIANT_INLINE void MultiBody::limit(const Joint& joint, double lower, double upper, double restitution) {
+  add_limits(joint, make_limits(coordinate(joint), lower, upper, restitution));
+}
+PLIANT_INLINE void MultiBody::limit_swing(const Joint& joint, double max, double restitution) {
+  add_limits(joint, make_swing_limit(coordinate(joint), max, restitution));
+}
+PLIANT_INLINE void MultiBody::limit_twist(const Joint& joint, double lower, double upper,
+                                          double restitution) {
+  add_limits(joint, make_twist_limits(coordinate(joint), lower, upper, restitution));
+}
+
+PLIANT_INLINE Drive& MultiBody::drive(std::string name, const Joint& coordinate, int row) {
+  auto drive = std::make_unique<Drive>();
+  drive->name = std::move(name);
+  drive->on.kind = Signal::Kind::coordinate;
+  drive->on.coordinate = &coordinate;
+  drive->on.index = row;
+  drive->angle = coordinate.type() != std::string(SliderPosition::name);
+  drives_.push_back(std::move(drive));
+  return *drives_.back();
+}
+
+PLIANT_INLINE Drive& MultiBody::drive(std::string name, const Part& part, const std::string& parameter) {
+  auto drive = std::make_unique<Drive>();
+  drive->on.kind = Signal::Kind::parameter;
+  drive->on.part = &part;
+  drive->on.index = part.parameters().dynamic_number(parameter);
+  if (drive->on.index < 0)
+    throw std::invalid_argument("drive '" + name + "': part '" + part.name() +
+                                "' has no dynamic parameter '" + parameter + "'");
+  drive->name = std::move(name);
+  drives_.push_back(std::move(drive));
+  return *drives_.back();
+}
+
+PLIANT_INLINE int MultiBody::input(std::string name, double initial) {
+  if (name.empty()) throw std::invalid_argument("an input needs a name");
+  for (const Input& other : inputs_)
+    if (other.name == name) throw std::invalid_argument("there are two inputs called '" + name + "'");
+  inputs_.push_back({std::move(name), initial});
+  return static_cast<int>(inputs_.size()) - 1;
+}
+
+PLIANT_INLINE const Sensor& MultiBody::sensor(std::string name, StateFunction value) {
+  if (name.empty()) throw std::invalid_argument("a sensor needs a name");
+  for (const std::unique_ptr<Sensor>& other : sensors_)
+    if (other->name == name) throw std::invalid_argument("there are two sensors called '" + name + "'");
+  sensors_.push_back(std::make_unique<Sensor>(Sensor{std::move(name), std::move(value)}));
+  return *sensors_.back();
 }
 
 PLIANT_INLINE Joint& MultiBody::join(std::unique_ptr<Joint> joint) {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/actuation/drive.h>
+#include <pliant/body/actuation/joint_coordinate.h>
 #include <pliant/body/constraint/stabilization.h>
 #include <pliant/body/contact_settings.h>
 #include <pliant/body/joints/joint.h>
@@ -24,23 +26,28 @@ namespace pliant {
 /// A linear spring and damper between two points a and b, with stiffness k and damping c. d is the vector
 /// from a to b. With rest length 0 the force on b is -k d - c d_dot. With a rest length > 0 the force on b is
 /// -(k (|d| - rest length) + c times the rate of |d|) d / |d|, and zero while |d| = 0. The force on a is
-/// opposite.
+/// opposite. With a stiffness or rest length that changes, the spring is a muscle: the ledger has the work of
+/// its elastic force as actuation, and no energy of the spring.
 struct Spring {
   std::string name;
   Point a, b;
-  double stiffness = 0;    ///< N/m
-  double damping = 0;      ///< N s/m
-  double rest_length = 0;  ///< m
+  StateFunction stiffness;    ///< N/m
+  StateFunction damping;      ///< N s/m
+  StateFunction rest_length;  ///< m
   /// The spring acts at the times on <= t < off, s. At other times it has no force and no energy, and does
   /// not influence the length of steps. The ledger counts the energy that appears at `on` and disappears at
   /// `off` as work of anchors. Both times must not change while a step is computed.
   double on = -std::numeric_limits<double>::infinity(), off = std::numeric_limits<double>::infinity();
   bool acts_at(double t) const { return on <= t && t < off; }
 
-  /// Returns the energy of the spring, J. x_a, x_b: positions of its ends, m, world.
+  bool is_constant() const {
+    return stiffness.is_constant() && damping.is_constant() && rest_length.is_constant();
+  }
+  /// Returns the energy of the spring, J; 0 for a muscle. x_a, x_b: positions of its ends, m, world.
   double energy(const Vec3<double>& x_a, const Vec3<double>& x_b) const {
-    const double stretch = (x_b - x_a).norm() - rest_length;
-    return 0.5 * stiffness * stretch * stretch;
+    if (!is_constant()) return 0;
+    const double stretch = (x_b - x_a).norm() - rest_length.constant();
+    return 0.5 * stiffness.constant() * stretch * stretch;
   }
 };
 
@@ -50,7 +57,7 @@ enum class Frame { world, body };
 struct PointForce {
   std::string name;
   Point at;
-  TimeVector force;  ///< N
+  StateVector force;  ///< N
   Frame frame = Frame::world;
   /// A force by a function of the library user, which replaces `force`: (t, position and velocity in the
   /// world) -> N in the world. Directional derivatives (Dynamics::jvp) treat the force as constant. During
@@ -63,7 +70,7 @@ struct PointForce {
 struct Torque {
   std::string name;
   const Part* part = nullptr;
-  TimeVector torque;              ///< N m
+  StateVector torque;             ///< N m
   Frame frame = Frame::world;     ///< Frame::body: the frame of `part`
   const Part* against = nullptr;  ///< nullptr: an external torque
 };
@@ -97,18 +104,45 @@ class MultiBody {
   std::size_t n_computed() const { return constants_.computed(); }
 
   /// Adds a spring between two points: stiffness (N/m), damping (N s/m) and rest length (m). Throws
-  /// std::invalid_argument if one of these is negative or not finite.
-  Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
-                 double rest_length = 0);
+  /// std::invalid_argument if one of these is a constant that is negative or not finite.
+  Spring& spring(std::string name, Point a, Point b, StateFunction stiffness, StateFunction damping = 0,
+                 StateFunction rest_length = 0);
   /// Removes a spring of this MultiBody. No Model of this MultiBody may exist.
   void remove(const Spring& spring);
   /// Adds a force (N) at a material point. frame: the frame of its components.
-  PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
+  PointForce& force(std::string name, Point at, StateVector force, Frame frame = Frame::world);
   /// Adds a force at a material point by a function, see PointForce::custom.
   PointForce& force(std::string name, Point at,
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
   /// Adds a torque (N m) on a part. frame: the frame of its components.
-  Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
+  Torque& torque(std::string name, const Part& part, StateVector torque, Frame frame = Frame::world);
+
+  /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (rotation vector,
+  /// rad: twist and two components of the swing), for signals and drives. It is zero at time 0 with
+  /// undeformed parts, except for the position of a slider, for a hinge with from_axis and for a ball joint
+  /// with BallAxes::rotation. Later calls for the same joint return its first coordinate. Throws
+  /// std::invalid_argument for joints of other types.
+  const Joint& coordinate(const Joint& joint, const BallAxes& ball = {});
+  /// Limits the angle of a hinge (rad) or the position of a slider (m) to [lower, upper], with a restitution
+  /// from 0 to 1. Adds the one-sided joints "NAME.lower" and "NAME.upper". Throws std::invalid_argument
+  /// unless lower < upper, upper - lower < 2 pi for a hinge, and for joints of other types.
+  void limit(const Joint& joint, double lower, double upper, double restitution = 0);
+  /// Limits the swing of a ball joint, the angle between the axes of both sides, to (0, pi); adds the
+  /// one-sided joint "NAME.swing". Limits its twist to [lower, upper]; adds "NAME.lower" and "NAME.upper".
+  /// The coordinate of the joint defines the axis. Throws std::invalid_argument for other numbers and other
+  /// joints.
+  void limit_swing(const Joint& joint, double max, double restitution = 0);
+  void limit_twist(const Joint& joint, double lower, double upper, double restitution = 0);
+  /// Adds a drive on a row of a coordinate, or on a dynamic parameter of a part. The drive has no force until
+  /// its members are set. Throws std::invalid_argument if the parameter is not dynamic.
+  Drive& drive(std::string name, const Joint& coordinate, int row = 0);
+  Drive& drive(std::string name, const Part& part, const std::string& parameter);
+  /// Adds an input: a number that the controller of a simulation sets (Simulation::set_controller) and that
+  /// formulas read by its name. Returns its index in State::inputs. Throws std::invalid_argument if the name
+  /// is in use or empty.
+  int input(std::string name, double initial = 0);
+  /// Adds a sensor. Throws std::invalid_argument if the name is in use or empty.
+  const Sensor& sensor(std::string name, StateFunction value);
 
   /// Returns gravity at time t (s), m/s^2, world.
   Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
@@ -155,6 +189,10 @@ class MultiBody {
   const std::vector<std::unique_ptr<PointForce>>& forces() const { return forces_; }
   const std::vector<std::unique_ptr<Torque>>& torques() const { return torques_; }
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
+  const std::vector<std::unique_ptr<Joint>>& coordinates() const { return coordinates_; }
+  const std::vector<std::unique_ptr<Drive>>& drives() const { return drives_; }
+  const std::vector<std::unique_ptr<Sensor>>& sensors() const { return sensors_; }
+  const std::vector<Input>& inputs() const { return inputs_; }
   /// Returns the part with a name; nullptr if there is none.
   Part* find(const std::string& name) const;
   bool has_joint(const std::string& name) const { return joint_names_.count(name) > 0; }
@@ -162,6 +200,9 @@ class MultiBody {
   int index(const Part& part) const;
 
  private:
+  /// Adds the one-sided joints of a limit, which act during the same times as the joint.
+  void add_limits(const Joint& joint, std::vector<std::unique_ptr<Joint>> limits);
+
   std::vector<std::unique_ptr<Part>> parts_;
   mutable ConstantsCache constants_;                // Model prepares the parts of a constant body
   std::unordered_map<std::string, int> number_of_;  // by name
@@ -170,6 +211,10 @@ class MultiBody {
   std::vector<std::unique_ptr<Torque>> torques_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::unordered_set<std::string> joint_names_;
+  std::vector<std::unique_ptr<Joint>> coordinates_;  // each has the name of its joint
+  std::vector<std::unique_ptr<Drive>> drives_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::vector<Input> inputs_;
 };
 
 }  // namespace pliant

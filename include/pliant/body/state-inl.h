@@ -51,6 +51,7 @@ PLIANT_INLINE std::uint64_t hash(const State& state) {
   hash.add_each(state.q);
   hash.add_each(state.v);
   hash.add_each(state.work);
+  hash.add_each(state.inputs);
   hash.add_each(state.at_limit);
   hash.add_each(state.joints);
   hash.add_each(state.at_rest);

@@ -67,6 +67,7 @@ struct State {
   VecX<double> q;  ///< coordinates of all parts: c (3), quaternion w x y z (4), q_s, q_d of each
   VecX<double> v;  ///< velocities of all parts: c_dot (world, 3), omega (body, 3), q_s_dot, q_d_dot of each
   Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< work since start, J
+  VecX<double> inputs;  ///< values that a controller sets, constant in a step (MultiBody::input)
   /// Of each dynamic parameter: -1 at its lower limit, 1 at its upper limit, 0 between.
   std::vector<std::int8_t> at_limit;
   std::vector<JointMode> joints;  ///< mode of each joint

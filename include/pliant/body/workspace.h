@@ -85,17 +85,26 @@ inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
   return w.inertia.M;
 }
 
+/// The rows of a coordinate of a joint, which are evaluated when a load or sensor first reads them.
+template <class S>
+struct CoordinateWorkspace {
+  bool known = false;  ///< whether `rows` belong to this evaluation
+  JointRows<S> rows;   ///< without bias
+};
+
 /// The quantities of all parts and joints.
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
   std::vector<int> before_joints;             ///< numbers of the parts that are evaluated before any joint
   std::vector<std::uint8_t> without_inertia;  ///< of each part: 1 if one of its velocities has no inertia
-  ConstraintWorkspace<S> joints;              ///< stage 4
-  GroupVectors<S, kMaxVelocities> alone;      ///< vectors of the part whose limits are being projected
-  std::vector<RigidWorkspace> rigid;          ///< quantities of each rigid island
-  VecX<S> v_dot;                              ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
-  Vec<S, kWorks> power;                       ///< stages 3 to 5: power of each kind of work, W
+  VecX<double> inputs;                        ///< State::inputs
+  std::vector<CoordinateWorkspace<S>> coordinates;  ///< of joints: stage 3
+  ConstraintWorkspace<S> joints;                    ///< stage 4
+  GroupVectors<S, kMaxVelocities> alone;            ///< vectors of the part whose limits are being projected
+  std::vector<RigidWorkspace> rigid;                ///< quantities of each rigid island
+  VecX<S> v_dot;         ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
+  Vec<S, kWorks> power;  ///< stages 3 to 5: power of each kind of work, W
 };
 
 }  // namespace pliant

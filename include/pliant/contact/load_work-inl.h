@@ -1,65 +1,133 @@
-// Function bodies of load_work.h: the work of forces and torques during a displacement. Forces and torques
-// are evaluated at the end of the displacement.
+// Function bodies of load_work.h: the work of loads during a displacement. Their forces are evaluated at the
+// end of the displacement.
 #pragma once
 
 #include <pliant/contact/load_work.h>
 
 #include <algorithm>
 
+#include <pliant/body/stages/loads.h>
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 #include <pliant/math/rotation_vector.h>
 
 namespace pliant {
 
-PLIANT_INLINE LoadWork::LoadWork(const Dynamics& dynamics, const State& from) : dynamics_(dynamics) {
-  const Model& model = dynamics.model();
-  for (const ForceModel& f : model.forces()) loaded_.push_back(f.at.part);
-  for (const TorqueModel& m : model.torques()) {
-    loaded_.push_back(m.part);
-    loaded_.push_back(m.against);
-  }
-  std::sort(loaded_.begin(), loaded_.end());
-  loaded_.erase(std::unique(loaded_.begin(), loaded_.end()), loaded_.end());
-  loaded_.erase(std::remove_if(loaded_.begin(), loaded_.end(),
-                               [&](int i) { return i < 0 || model.parts()[at(i)].q0 < 0; }),
-                loaded_.end());
-  evaluate_frames(from);
-  for (const ForceModel& f : model.forces())
-    x_.push_back(std::binary_search(loaded_.begin(), loaded_.end(), f.at.part)
-                     ? work_.parts[at(f.at.part)].port_x[at(f.at.port)]
-                     : Vec3<double>::Zero());
-  for (const int i : loaded_) R_.push_back(work_.parts[at(i)].R);
+namespace load_work {
+
+inline bool has_actuation(const DriveModel& m) {
+  return !m.drive->is_passive();
+}
+inline bool has_actuation(const SpringModel& m) {
+  return !m.functions.empty();
 }
 
-PLIANT_INLINE void LoadWork::evaluate_frames(const State& state) {
-  for (const int i : loaded_) dynamics_.evaluate_frame(state.q, state.v, i, work_);
+}  // namespace load_work
+
+PLIANT_INLINE LoadWork::LoadWork(const Dynamics& dynamics, const State& from) : dynamics_(dynamics) {
+  const Model& model = dynamics.model();
+  auto read = [&](const std::vector<FunctionModel>& functions) {
+    for (const FunctionModel& function : functions) model.append_parts(function, loaded_);
+  };
+  for (const ForceModel& f : model.forces()) {
+    loaded_.push_back(f.at.part);
+    read(f.components);
+  }
+  for (const TorqueModel& m : model.torques()) {
+    loaded_.insert(loaded_.end(), {m.part, m.against});
+    read(m.components);
+  }
+  for (const SpringModel& s : model.springs())
+    if (load_work::has_actuation(s)) {
+      loaded_.insert(loaded_.end(), {s.a.part, s.b.part});
+      read(s.functions);
+    }
+  for (const DriveModel& m : model.drives())
+    if (load_work::has_actuation(m)) {
+      model.append_parts(m.on, loaded_);
+      read({m.target, m.target_rate, m.stiffness, m.damping, m.force});
+    }
+  std::sort(loaded_.begin(), loaded_.end());
+  loaded_.erase(std::unique(loaded_.begin(), loaded_.end()), loaded_.end());
+  loaded_.erase(std::remove(loaded_.begin(), loaded_.end(), -1), loaded_.end());
+  if (loaded_.empty()) return;
+  const Evaluation<double> e = evaluate(from.time(), from);
+  before_ = places(e);
+}
+
+PLIANT_INLINE Evaluation<double> LoadWork::evaluate(double t, const State& state) {
+  const Model& model = dynamics_.model();
+  const Evaluation<double> e{dynamics_, t, state.q, state.v, work_};
+  detail::forget_coordinates(e);
+  work_.inputs = state.inputs;
+  work_.parts.resize(model.parts().size());
+  for (const int i : loaded_)
+    if (model.parts()[at(i)].q0 >= 0)
+      dynamics_.evaluate_frame(state.q, state.v, i, work_);
+    else
+      detail::evaluate_positions<double>(model.parts()[at(i)], t, state.q, state.v, work_.parts[at(i)]);
+  return e;
+}
+
+PLIANT_INLINE LoadWork::Places LoadWork::places(const Evaluation<double>& e) const {
+  const Model& model = dynamics_.model();
+  Places places;
+  for (const ForceModel& f : model.forces())
+    places.forces.push_back(detail::motion_of(e, f.at, f.force->at).x);
+  for (const TorqueModel& m : model.torques())
+    for (const int part : {m.part, m.against})
+      places.rotations.push_back(part < 0 ? Mat3<double>::Identity() : e.part_work(part).R);
+  for (const SpringModel& s : model.springs())
+    if (load_work::has_actuation(s))
+      places.springs.push_back(detail::motion_of(e, s.b, s.spring->b).x -
+                               detail::motion_of(e, s.a, s.spring->a).x);
+  for (const DriveModel& m : model.drives())
+    if (load_work::has_actuation(m)) places.drives.push_back(detail::signal_value(e, m.on));
+  return places;
 }
 
 PLIANT_INLINE double LoadWork::work_until(double t, const State& to) {
   if (loaded_.empty()) return 0;
-  evaluate_frames(to);
   const Model& model = dynamics_.model();
+  const Evaluation<double> e = evaluate(t, to);
+  const Places after = places(e);
   double work = 0;
-  for (std::size_t k = 0; k < x_.size(); ++k) {
+  for (std::size_t k = 0; k < model.forces().size(); ++k) {
     const ForceModel& f = model.forces()[k];
-    if (!std::binary_search(loaded_.begin(), loaded_.end(), f.at.part)) continue;
-    const PartWorkspace<double>& w = work_.parts[at(f.at.part)];
-    const Vec3<double>&x = w.port_x[at(f.at.port)], &x_dot = w.port_x_dot[at(f.at.port)];
-    Vec3<double> force = f.force->custom ? f.force->custom(t, x, x_dot) : f.force->force.value(t);
-    if (!f.force->custom && f.force->frame == Frame::body) force = (w.R * force).eval();
-    work += force.dot(x - x_[k]);
+    if (model.parts()[at(f.at.part)].q0 < 0) continue;
+    const Vec3<double> force = detail::force_of(e, f, detail::motion_of(e, f.at, f.force->at));
+    work += force.dot(after.forces[k] - before_.forces[k]);
   }
-  auto rotation_of = [&](int part) -> Vec3<double> {
-    const auto found = std::lower_bound(loaded_.begin(), loaded_.end(), part);
-    if (found == loaded_.end() || *found != part) return Vec3<double>::Zero();
-    const Mat3<double>& before = R_[static_cast<std::size_t>(found - loaded_.begin())];
-    return rotation_vector<double>(work_.parts[at(part)].R * before.transpose());
-  };
-  for (const TorqueModel& m : model.torques()) {
-    Vec3<double> torque = m.torque->torque.value(t);
-    if (m.torque->frame == Frame::body) torque = (work_.parts[at(m.part)].R * torque).eval();
-    work += torque.dot(rotation_of(m.part) - rotation_of(m.against));
+  for (std::size_t k = 0; k < model.torques().size(); ++k) {
+    const TorqueModel& m = model.torques()[k];
+    Vec3<double> torque = detail::torque_of(e, m);
+    if (m.torque->frame == Frame::body) torque = (e.part_work(m.part).R * torque).eval();
+    const int sides[] = {m.part, m.against};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (sides[side] < 0 || model.parts()[at(sides[side])].q0 < 0) continue;
+      const Mat3<double> turn = after.rotations[2 * k + side] * before_.rotations[2 * k + side].transpose();
+      work += (side == 0 ? 1 : -1) * torque.dot(rotation_vector<double>(turn));
+    }
+  }
+  std::size_t spring = 0, drive = 0;
+  for (const SpringModel& s : model.springs()) {
+    if (!load_work::has_actuation(s)) continue;
+    const Vec3<double> change = after.springs[spring] - before_.springs[spring];
+    ++spring;
+    if (!s.spring->acts_at(t)) continue;
+    const detail::PortMotion<double> a = detail::motion_of(e, s.a, s.spring->a),
+                                     b = detail::motion_of(e, s.b, s.spring->b);
+    work -= detail::force_of(e, s, a, b).elastic.dot(change);
+  }
+  for (const DriveModel& m : model.drives()) {
+    if (!load_work::has_actuation(m)) continue;
+    const detail::DriveForce<double> f =
+        detail::force_of(e, m, after.drives[drive], detail::signal_rate(e, m.on));
+    double change = after.drives[drive] - before_.drives[drive];
+    if (m.drive->angle) change -= 2 * kPi * std::round(change / (2 * kPi));
+    work += (f.elastic + f.damping) * change;
+    ++drive;
   }
   return work;
 }

@@ -1,10 +1,11 @@
-// The work of external forces and torques during displacements by contact impulses and by the separation of
-// overlapping bodies.
+// The work of loads without potential energy (forces, torques, muscles, drives) during displacements by
+// contact impulses and by the separation of overlapping bodies.
 #pragma once
 
 #include <vector>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/body/stages/evaluation.h>
 
 namespace pliant {
 
@@ -12,18 +13,26 @@ class LoadWork {
  public:
   /// from: the state before the displacement.
   LoadWork(const Dynamics& dynamics, const State& from);
-  /// Returns the work of the forces and torques at time t (s) during the displacement to the state `to`, J.
+  /// Returns the work of the loads at time t (s) during the displacement to the state `to`, J.
   double work_until(double t, const State& to);
 
  private:
-  void evaluate_frames(const State& state);
+  /// The places of the loads that displacements change.
+  struct Places {
+    std::vector<Vec3<double>> forces;     // attachment point of each force, m, world
+    std::vector<Mat3<double>> rotations;  // both parts of each torque, body to world
+    std::vector<Vec3<double>> springs;    // from end a to end b of each muscle, m, world
+    std::vector<double> drives;           // coordinate of each drive that is not passive
+  };
+
+  /// Evaluates the positions of the parts that the loads act on or read.
+  Evaluation<double> evaluate(double t, const State& state);
+  Places places(const Evaluation<double>& e) const;
 
   const Dynamics& dynamics_;
-  std::vector<int> loaded_;  // moving parts with forces or torques
+  std::vector<int> loaded_;  // parts that the loads act on or read
   Workspace<double> work_;
-  // Before the displacement:
-  std::vector<Vec3<double>> x_;  // attachment point of each force, m, world
-  std::vector<Mat3<double>> R_;  // orientation of each loaded part, body to world
+  Places before_;
 };
 
 }  // namespace pliant

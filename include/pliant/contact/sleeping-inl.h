@@ -30,6 +30,17 @@ inline bool differs(const TimeVector& x, double t, double h) {
   return x.value(t + h) != now || x.value(t + 0.5 * h) != now;
 }
 
+/// Returns whether a function changes within h seconds after t, as above. A function of the state may always
+/// change.
+inline bool differs(const StateFunction& x, double t, double h) {
+  if (x.reads_state()) return true;
+  const double now = x.of_time().value(t);
+  return x.of_time().value(t + h) != now || x.of_time().value(t + 0.5 * h) != now;
+}
+inline bool differs(const StateVector& x, double t, double h) {
+  return differs(x.component[0], t, h) || differs(x.component[1], t, h) || differs(x.component[2], t, h);
+}
+
 /// Returns whether a point has prescribed motion: a moving point of the world, or a point of a part with
 /// prescribed motion.
 inline bool is_prescribed(const Point& point) {
@@ -87,8 +98,8 @@ PLIANT_INLINE Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& rest
   find_switches();
 }
 
-/// Finds the drives that change in time: rest values, forces, torques, prescribed motions at springs and
-/// joints, and gravity.
+/// Finds the drives that change: rest values, forces, torques, springs, drives of joints and parameters,
+/// prescribed motions at springs and joints, and gravity.
 PLIANT_INLINE void Sleeping::find_drives() {
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];
@@ -118,6 +129,27 @@ PLIANT_INLINE void Sleeping::find_drives() {
         drives_.push_back({end, [spring = s.spring, far = other](double t, double h) {
                              return sleeping::pulls(*spring, *far, t, h);
                            }});
+  for (const SpringModel& s : model_.springs())
+    for (const int end : {s.a.part, s.b.part})
+      if (has(end) && !s.functions.empty())
+        drives_.push_back({end, [spring = s.spring](double t, double h) {
+                             return sleeping::differs(spring->stiffness, t, h) ||
+                                    sleeping::differs(spring->damping, t, h) ||
+                                    sleeping::differs(spring->rest_length, t, h);
+                           }});
+  for (const DriveModel& m : model_.drives()) {
+    std::vector<int> parts;
+    model_.append_parts(m.on, parts);
+    for (const int part : parts)
+      if (has(part) && !m.drive->is_passive())
+        drives_.push_back({part, [drive = m.drive](double t, double h) {
+                             return sleeping::differs(drive->target, t, h) ||
+                                    (drive->target_rate && sleeping::differs(*drive->target_rate, t, h)) ||
+                                    sleeping::differs(drive->stiffness, t, h) ||
+                                    sleeping::differs(drive->damping, t, h) ||
+                                    sleeping::differs(drive->force, t, h);
+                           }});
+  }
   for (const int j : model_.driven_joints()) {
     const JointModel& joint = model_.joints()[at(j)];
     drives_.push_back({joint.sides.front().part, [&joint](double t, double h) {

@@ -10,6 +10,7 @@
 //     NAME.PARAMETER_dot                     rates of the dynamic parameters
 //     NAME.com.x y z                         centre of mass (m, world), if it may differ from NAME.c
 //   track.NAME.x y z                         tracked points, m, world
+//   sensor.NAME                              value of a sensor
 //   if the parts have columns, for every joint NAME:
 //     joint.NAME.force.x y z                 force on the first side of the joint, N, world
 //     joint.NAME.torque.x y z                torque on this side about the joint, N m, if it has one

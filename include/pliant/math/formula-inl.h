@@ -1,4 +1,4 @@
-// Evaluation of the postfix program of a formula on second-order Taylor numbers.
+// Evaluation of the postfix program of a formula on numbers, dual numbers and second-order Taylor numbers.
 #pragma once
 
 #include <pliant/math/formula.h>
@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <pliant/math/header_only.h>
+#include <pliant/math/scalar/dual.h>
 
 namespace pliant {
 
@@ -15,6 +16,7 @@ namespace detail::formula_program {
 using Code = Formula::Code;
 using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
+using Dual1 = Dual<1, double>;
 
 inline constexpr int kSmallStack = 16;
 /// Each level of nesting adds at most five numbers to the stack: the left operands of a sum and of a product,
@@ -30,27 +32,50 @@ inline double sign_ahead(const Taylor& x) {
   return 0;
 }
 
-/// Returns f(a) from the value and the first and second derivative of f at a.v.
-inline Taylor chain(const Taylor& a, double value, double slope, double curvature) {
-  return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
+/// Returns the sign of x: without derivatives in t there is no later value.
+inline double sign_ahead(double x) {
+  return x > 0 ? 1 : (x < 0 ? -1 : 0);
+}
+inline double sign_ahead(const Dual1& x) {
+  return sign_ahead(x.v);
 }
 
-inline Taylor tan(const Taylor& a) {
-  const double y = math::sin(a.v) / math::cos(a.v);
+/// Returns f(a) from the value and the first and second derivative of f at a.
+inline double chain(double /*a*/, double value, double /*slope*/, double /*curvature*/) {
+  return value;
+}
+inline Dual1 chain(const Dual1& a, double value, double slope, double /*curvature*/) {
+  return chain_rule(a, value, slope);
+}
+inline Taylor chain(const Taylor& a, double value, double slope, double curvature) {
+  return chain_rule(a, value, slope, curvature);
+}
+
+template <class T>
+T tan(const T& a) {
+  const double x = plain(a), y = math::sin(x) / math::cos(x);
   const double slope = 1 + y * y;
   return chain(a, y, slope, 2 * y * slope);
 }
 
 /// Returns a^n for a constant exponent. If the factor n or n - 1 in a derivative of a^n is zero, this
 /// derivative is 0 for every a.
-inline Taylor power(const Taylor& a, double n) {
-  const double slope = n == 0 ? 0 : n * std::pow(a.v, n - 1);
-  const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.v, n - 2);
-  return chain(a, std::pow(a.v, n), slope, curvature);
+template <class T>
+T power(const T& a, double n) {
+  const double x = plain(a), slope = n == 0 ? 0 : n * std::pow(x, n - 1);
+  const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(x, n - 2);
+  return chain(a, std::pow(x, n), slope, curvature);
 }
 
 /// Returns a^b for a variable exponent. The derivatives contain log a, so they are not finite for a <= 0.
-inline Taylor power(const Taylor& a, const Taylor& b) {
+inline double variable_power(double a, double b) {
+  return std::pow(a, b);
+}
+inline Dual1 variable_power(const Dual1& a, const Dual1& b) {
+  const double value = std::pow(a.v, b.v);
+  return chain_rule(Dual1(b * log(a)), value, value);
+}
+inline Taylor variable_power(const Taylor& a, const Taylor& b) {
   const Taylor exponent = b * log(a);
   const double value = std::pow(a.v, b.v);
   return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
@@ -58,25 +83,28 @@ inline Taylor power(const Taylor& a, const Taylor& b) {
 
 /// Returns the argument that is larger just after t if sign is 1, or smaller if sign is -1; the first of two
 /// equal ones; NaN if one of them is NaN.
-inline Taylor choose(const Taylor& x, const Taylor& y, double sign) {
-  const Taylor difference = x - y;
-  if (std::isnan(difference.v)) return difference;
+template <class T>
+T choose(const T& x, const T& y, double sign) {
+  const T difference = x - y;
+  if (std::isnan(plain(difference))) return difference;
   return sign * sign_ahead(difference) >= 0 ? x : y;
 }
 
 /// Returns 0 for x < edge, 1 for x >= edge, NaN for NaN.
-inline Taylor step(const Taylor& x, double edge) {
-  if (x.v < edge) return 0.0;
-  return x.v >= edge ? Taylor(1.0) : x;
+template <class T>
+T step(const T& x, double edge) {
+  if (plain(x) < edge) return T(0.0);
+  return plain(x) >= edge ? T(1.0) : x;
 }
 
 /// Returns 0 up to a, 1 from b on, and between them the quintic whose first and second derivatives vanish at
 /// both ends. With a = b the function is a step; with a > b it falls from 1 (up to b) to 0 (from a on).
-inline Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
-  if (a.v == b.v) return step(x, a.v);
-  const Taylor s = (x - a) / (b - a);
-  if (s.v <= 0) return 0.0;
-  if (s.v >= 1) return 1.0;
+template <class T>
+T smoothstep(const T& a, const T& b, const T& x) {
+  if (plain(a) == plain(b)) return step(x, plain(a));
+  const T s = (x - a) / (b - a);
+  if (plain(s) <= 0) return T(0.0);
+  if (plain(s) >= 1) return T(1.0);
   return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
 }
 
@@ -85,6 +113,7 @@ inline int arguments(Code code) {
   switch (code) {
     case Code::kNumber:
     case Code::kTime:
+    case Code::kVariable:
       return 0;
     case Code::kAdd:
     case Code::kSubtract:
@@ -101,13 +130,17 @@ inline int arguments(Code code) {
   }
 }
 
-/// Returns the result of one instruction on its arguments, x[0] the first.
-inline Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x) {
+/// Returns the result of one instruction on its arguments, x[0] the first. variables: the values of the names
+/// of the formula, in the order of their numbers.
+template <class T>
+T apply(const Instruction& instruction, const T& time, const T* variables, const T* x) {
   switch (instruction.code) {
     case Code::kNumber:
-      return instruction.number;
+      return T(instruction.number);
     case Code::kTime:
       return time;
+    case Code::kVariable:
+      return variables[static_cast<std::size_t>(instruction.number)];
     case Code::kAdd:
       return x[0] + x[1];
     case Code::kSubtract:
@@ -119,21 +152,21 @@ inline Taylor apply(const Instruction& instruction, const Taylor& time, const Ta
     case Code::kNegate:
       return -x[0];
     case Code::kPower:
-      return power(x[0], x[1]);
+      return variable_power(x[0], x[1]);
     case Code::kConstantPower:
       return power(x[0], instruction.number);
     case Code::kSin:
-      return sin(x[0]);
+      return math::sin(x[0]);
     case Code::kCos:
-      return cos(x[0]);
+      return math::cos(x[0]);
     case Code::kTan:
       return tan(x[0]);
     case Code::kExp:
-      return exp(x[0]);
+      return math::exp(x[0]);
     case Code::kLog:
-      return log(x[0]);
+      return math::log(x[0]);
     case Code::kSqrt:
-      return sqrt(x[0]);
+      return math::sqrt(x[0]);
     case Code::kAbs:
       return sign_ahead(x[0]) < 0 ? -x[0] : x[0];
     case Code::kMin:
@@ -145,7 +178,7 @@ inline Taylor apply(const Instruction& instruction, const Taylor& time, const Ta
     case Code::kSmoothstep:
       return smoothstep(x[0], x[1], x[2]);
   }
-  return 0.0;
+  return T(0.0);
 }
 
 inline bool has_branches(Code code) {
@@ -172,17 +205,16 @@ inline bool branch(const Instruction& instruction, const Taylor* x) {
   }
 }
 
-/// Evaluates a program at t with a stack of Size numbers. Before each instruction it calls see(instruction,
+/// Evaluates a program with a stack of Size numbers. Before each instruction it calls see(instruction,
 /// arguments).
-template <int Size, class See>
-Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
-  const Taylor time(t, 1.0, 0.0);
-  std::array<Taylor, Size> stack;
-  Taylor* top = stack.data();
+template <int Size, class T, class See>
+T run(const std::vector<Instruction>& program, const T& time, const T* variables, See&& see) {
+  std::array<T, Size> stack;
+  T* top = stack.data();
   for (const Instruction& instruction : program) {
     top -= arguments(instruction.code);
     see(instruction, top);
-    *top = apply(instruction, time, top);
+    *top = apply(instruction, time, variables, top);
     ++top;
   }
   return stack[0];
@@ -190,18 +222,24 @@ Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
 
 }  // namespace detail::formula_program
 
+template <class T>
+T Formula::value(const T& time, const T* variables) const {
+  auto unseen = [](const Instruction&, const T*) {};
+  using namespace detail::formula_program;
+  return stack_ <= kSmallStack ? run<kSmallStack>(program_, time, variables, unseen)
+                               : run<kLargeStack>(program_, time, variables, unseen);
+}
+
 PLIANT_INLINE Taylor2<double> Formula::at(double t) const {
-  auto unseen = [](const Instruction&, const Taylor2<double>*) {};
-  return stack_ <= detail::formula_program::kSmallStack
-             ? detail::formula_program::run<detail::formula_program::kSmallStack>(program_, t, unseen)
-             : detail::formula_program::run<detail::formula_program::kLargeStack>(program_, t, unseen);
+  return value<Taylor2<double>>({t, 1.0, 0.0}, nullptr);
 }
 
 PLIANT_INLINE std::uint64_t Formula::branches(double t) const {
   constexpr std::uint64_t prime = 1099511628211U;  // of the hash FNV-1a
   std::uint64_t all = 14695981039346656037U;
-  detail::formula_program::run<detail::formula_program::kLargeStack>(
-      program_, t, [&](const Instruction& instruction, const Taylor2<double>* x) {
+  detail::formula_program::run<detail::formula_program::kLargeStack, Taylor2<double>>(
+      program_, Taylor2<double>(t, 1.0, 0.0), nullptr,
+      [&](const Instruction& instruction, const Taylor2<double>* x) {
         if (detail::formula_program::has_branches(instruction.code))
           all = (all ^ (detail::formula_program::branch(instruction, x) ? 1U : 2U)) * prime;
       });

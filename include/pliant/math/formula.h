@@ -1,16 +1,19 @@
-// Formulas of time in scenes, for example "0.2*sin(2*pi*t)". The parser turns the text into a flat program in
-// postfix order. The program runs on second-order Taylor numbers, so value, rate and second derivative are
-// exact.
+// Formulas in scenes, of time ("0.2*sin(2*pi*t)") and of named quantities ("-20*ball.z"). The parser turns
+// the text into a flat program in postfix order. A formula of time runs on second-order Taylor numbers, so
+// value, rate and second derivative are exact. A formula of named quantities runs on any scalar of
+// math/scalar.
 //
 //   sum     = product { ("+" | "-") product }          numbers  1  .5  2.5e-3
 //   product = unary { ("*" | "/") unary }              names    t  pi
 //   unary   = ("-" | "+") unary | power                functions: Formula::functions()
 //   power   = primary [ "^" unary ]                    -2^2 = -4, 2^3^2 = 2^9, 2^-1 = 0.5
-//   primary = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+//   primary = number | name | quantity | function "(" sum { "," sum } ")" | "(" sum ")"
+//   quantity = owner [ "." word { "." word } ]      owner: a word, or any text between two apostrophes
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -37,9 +40,14 @@ class FormulaError : public std::runtime_error {
   std::string reason_;
 };
 
-/// A formula of one variable, t. Subexpressions without t are evaluated once, by the constructor.
+/// A formula of t and of named quantities. Constant subexpressions are evaluated once, by the constructor.
 class Formula {
  public:
+  /// Returns the number of a named quantity, from 0, or -1 for an unknown name without quantity. owner: for
+  /// example the name of a part. quantity: the text after the first dot; empty if there is none. Throws
+  /// std::invalid_argument, with a complete message, if the owner has no such quantity.
+  using Names = std::function<int(const std::string& owner, const std::string& quantity)>;
+
   static constexpr std::size_t kMaxLength = 4096;  ///< bytes of text
   static constexpr int kMaxDepth = 64;             ///< nesting of parentheses, calls, signs and powers
 
@@ -52,11 +60,21 @@ class Formula {
   /// Returns the functions that a formula may call.
   static const std::vector<Function>& functions();
 
-  /// Parses a text. Throws FormulaError if the text is not a formula, if it is too long or nested too deeply,
-  /// or if a subexpression without t has no finite value (1/0).
-  explicit Formula(const std::string& text);
+  /// Parses a text. names: the quantities besides t and pi; by default there are none. Throws FormulaError if
+  /// the text is not a formula, if it is too long or nested too deeply, or if a constant subexpression has no
+  /// finite value (1/0).
+  explicit Formula(const std::string& text, const Names& names = {});
 
-  /// Returns the value and the first and second derivative with respect to t. At a kink of abs, min or max
+  /// Returns the value for values of t (s) and of the named quantities, in the order of their numbers. T is
+  /// double, Dual<1> or Taylor2<double>. At a kink of abs, min, max or step, derivatives are those of one
+  /// branch. Defined in formula-inl.h.
+  template <class T>
+  T value(const T& time, const T* variables) const;
+  /// Returns whether the formula contains named quantities.
+  bool has_variables() const { return has_variables_; }
+
+  /// For a formula without named quantities: returns the value and the first and second derivative with
+  /// respect to t. At a kink of abs, min or max
   /// the derivatives are one-sided, towards larger t. At a jump of step, or of smoothstep(a, a, x), the
   /// derivatives are zero. The result is not finite where the formula is not (1/t at 0); the caller checks
   /// this.
@@ -73,6 +91,7 @@ class Formula {
   enum class Code : std::uint8_t {
     kNumber,
     kTime,
+    kVariable,  ///< a named quantity; its number is the number of the instruction
     kAdd,
     kSubtract,
     kMultiply,
@@ -94,13 +113,13 @@ class Formula {
   };
   struct Instruction {
     Code code;
-    double number;  ///< the constant of kNumber, the exponent of kConstantPower
+    double number;  ///< the constant of kNumber, the exponent of kConstantPower, the number of kVariable
   };
 
  private:
   std::vector<Instruction> program_;
   int stack_ = 0;  ///< maximum depth of the stack during an evaluation
-  bool has_branches_ = false;
+  bool has_branches_ = false, has_variables_ = false;
 };
 
 }  // namespace pliant

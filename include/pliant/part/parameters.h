@@ -59,6 +59,8 @@ class Parameters {
   }
   /// Returns the number of the parameter of this name; -1 if there is none.
   int find(const std::string& name) const;
+  /// Returns the place in q_s of the dynamic parameter of this name; -1 if there is none.
+  int dynamic_number(const std::string& name) const;
   /// Returns all names, separated by blanks.
   std::string names() const;
 

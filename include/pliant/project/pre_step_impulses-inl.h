@@ -201,7 +201,8 @@ class PreStep {
   }
 
   /// Returns the smallest velocity of a row that the limits allow: at this velocity the parameter is at its
-  /// limit, or the string at its length, at the end of the step. Returns -infinity if the row has no bound.
+  /// limit, or the string at its length, at the end of the step, or the string rebounds. Returns -infinity if
+  /// the row has no bound.
   double min_velocity(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -211,6 +212,9 @@ class PreStep {
       if (mode == JointMode::off || mode == JointMode::closing || row.sign < 0 ||
           C > -rounding(string, storage_.ahead))
         return -std::numeric_limits<double>::infinity();
+      const double C_dot = storage_.ahead.joints.C_dot[string.row];
+      if (rebounds(step_.model(), string, C_dot))
+        return group_.value(row, vectors_.before) - (1 + string.joint->restitution()) * C_dot;
       return group_.value(row, vectors_.before) - C / step_.h;
     }
     const Range range = group_.model(row.part).limits[at(row.k)];

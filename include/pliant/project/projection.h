@@ -46,6 +46,16 @@ inline constexpr double kMaxUndoneShare = 0.25;
 /// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
 inline constexpr double kTaut = 1e-9;
 
+/// Rates of one-sided joints slower than this, in sizes of the joint times Stabilization::rate, do not
+/// rebound.
+inline constexpr double kMinRebound = 1e-3;
+
+/// Returns whether a one-sided joint that stops a motion with the rate C_dot (m/s) rebounds.
+inline bool rebounds(const Model& model, const JointModel& joint, double C_dot) {
+  return joint.joint->restitution() > 0 &&
+         -C_dot > kMinRebound * joint.length * model.body().stabilization.rate;
+}
+
 /// Returns the gap of a joint, m, below which a gap is rounding.
 inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   double size = 0;
@@ -492,6 +502,8 @@ class Projection {
       if (row.sign < 0 && !remains_active(row)) return kUnbounded;
       const double C_dot = work_.joints.C_dot[string.row];
       if (std::abs(C_dot) <= row_rounding(string, Rows::velocities)) return kUnbounded;
+      if (!remains_active(row) && rebounds(model_, string, C_dot))
+        return group_.value(row, v) - (1 + string.joint->restitution()) * C_dot;
       return group_.value(row, v) - row.sign * C_dot;
     }
     const int mode = limit_mode(state_, group_.model(row.part), row.k);

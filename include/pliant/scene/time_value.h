@@ -1,5 +1,5 @@
 // The JSON value of a function of time: a number, a formula of t in quotes, or key frames {"t": [...], "y":
-// [...]} with optional "end_rates".
+// [...]} with optional "end_rates". In the formula of a function of time and state, names are allowed, too.
 #pragma once
 
 #include <string>
@@ -17,6 +17,10 @@ Type time_function(std::string unit);
 /// The type of a vector function of time: three functions [x, y, z], or key frames of points {"t": [...],
 /// "points": [[x, y, z], ...]}; unit: of its components.
 Type time_vector(std::string unit);
+/// The type of a scalar function of time and state; unit: of its values; range: of a constant.
+Type state_function(std::string unit, Range range);
+/// The type of a vector function of time and state; unit: of its components.
+Type state_vector(std::string unit);
 
 }  // namespace schema
 

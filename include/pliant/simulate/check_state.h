@@ -15,6 +15,7 @@ namespace pliant::simulation {
 inline void check_sizes(const State& state, const Model& model) {
   if (state.q.size() != model.n_q() || state.v.size() != model.n_v() ||
       static_cast<int>(state.at_limit.size()) != model.n_limits() ||
+      state.inputs.size() != static_cast<Eigen::Index>(model.body().inputs().size()) ||
       state.joints.size() != model.joints().size() || state.at_rest.size() != model.n_resting() ||
       (!state.step_memory.empty() && state.step_memory.size() != model.parts().size()))
     throw std::invalid_argument("this state belongs to another model");

@@ -117,6 +117,7 @@ PLIANT_INLINE double evaluation_cost(const Part& part) {
 }
 
 PLIANT_INLINE bool has_stiffness(const Model& model, double t) {
+  if (!model.drives().empty()) return true;
   const auto& springs = model.springs();
   if (std::any_of(springs.begin(), springs.end(), [&](const SpringModel& s) { return s.spring->acts_at(t); }))
     return true;

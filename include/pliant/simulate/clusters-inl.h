@@ -58,7 +58,7 @@ PLIANT_INLINE Clusters::Clusters(Simulation& whole)
 
 PLIANT_INLINE Clusters::~Clusters() = default;
 
-/// Finds the parts without coordinates at joints, springs and torques of moving parts.
+/// Finds the parts without coordinates at joints of moving parts, and those that loads connect with them.
 PLIANT_INLINE void Clusters::find_anchors() {
   const Model& model = whole_.model_;
   auto add = [&](int one, int other) {
@@ -69,8 +69,7 @@ PLIANT_INLINE void Clusters::find_anchors() {
   };
   for (const JointModel& joint : model.joints())
     for (const PortRef& ref : joint.at) add(joint.sides.front().part, ref.part);
-  for (const SpringModel& spring : model.springs()) add(spring.a.part, spring.b.part);
-  for (const TorqueModel& torque : model.torques()) add(torque.part, torque.against);
+  for (const auto& [one, other] : model.load_connections()) add(one, other);
 }
 
 PLIANT_INLINE double Clusters::end_of_interval(double t) const {

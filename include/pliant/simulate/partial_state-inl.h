@@ -71,6 +71,7 @@ PLIANT_INLINE void extract_state(const Model& whole, const State& state, const M
   part.contact_residual = memory.contact_residual;
   part.contact_cache_age = memory.contact_cache_age;
   part.work.setZero();
+  part.inputs = state.inputs;
   for (std::size_t j = 0; j < some.joints().size(); ++j)
     part.joints[j] = state.joints[at(some.joint_numbers()[j])];
   partial_state::extract_cache(state.contact_cache, numbers, part.contact_cache);

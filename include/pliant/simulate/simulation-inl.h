@@ -174,6 +174,7 @@ PLIANT_INLINE void Simulation::step(double h) {
 
 /// Stage 1: stores the state at the start of the step.
 PLIANT_INLINE void Simulation::begin_step() {
+  if (controller_) controller_(state_.time(), state_, state_.inputs);
   last_good_ = state_;
   switching_.begin_step();
 }
@@ -370,9 +371,9 @@ PLIANT_INLINE StepError Simulation::try_step() {
 /// instead the ratio of the step to longest_contact_step(). before: the counters before the step.
 PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before, StepError& result) {
   const bool may_double = contact_->may_double();
-  // The work of point forces on resting bodies is computed for a motion that the contacts prevent. Short
-  // steps limit the error of this work.
-  if (!may_double || !model_.forces().empty()) {
+  // The work of point forces and drives on resting bodies is computed for a motion that the contacts prevent.
+  // Short steps limit the error of this work.
+  if (!may_double || !model_.forces().empty() || !model_.drives().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
     if (!may_double || share > 1) {
       result.order = 0;

@@ -65,6 +65,12 @@ class Simulation {
   /// model.
   void set_state(State state);
   double time() const { return state_.time(); }
+  /// Computes the inputs of the body (MultiBody::input) from the time t (s) and the state.
+  using Controller = std::function<void(double t, const State& state, Eigen::Ref<VecX<double>> inputs)>;
+  /// Sets a controller, which is called at the start of each step, or of each interval of the clusters. The
+  /// inputs are constant in the step. With a tolerance, steps end at multiples of the sampling time of a
+  /// digital controller if the caller advances by step(sampling time). Recordings do not contain the inputs.
+  void set_controller(Controller controller) { controller_ = std::move(controller); }
 
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
@@ -134,6 +140,7 @@ class Simulation {
   IntegratorChoice choice_;
   std::unique_ptr<ContactStepping> contact_;  ///< nullptr if contact is not active
   std::unique_ptr<Clusters> clusters_;        ///< nullptr if all parts step together
+  Controller controller_;
   State state_, last_good_, attempt_start_;
   State first_;  ///< the state at the start, or that of the last set_state()
   Workspace<double> work_, output_work_;

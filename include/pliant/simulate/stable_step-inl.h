@@ -87,8 +87,8 @@ inline Bound bound_springs(const Model& model, double t, std::size_t i) {
       if (ref.part != static_cast<int>(i) || !s.spring->acts_at(t)) continue;
       const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
       // The factor 2: the other end may move by an equal amount in the opposite direction.
-      bound.K += 2 * s.spring->stiffness * mobility;
-      bound.D += 2 * s.spring->damping * mobility;
+      bound.K += 2 * s.spring->stiffness.of_time().value(t) * mobility;
+      bound.D += 2 * s.spring->damping.of_time().value(t) * mobility;
     }
   return bound;
 }
@@ -158,8 +158,21 @@ class StableStepSearch {
   /// Returns whether the method integrates the elasticity of a part implicitly.
   bool is_implicit(const PartModel& m) const { return m.local != nullptr && method_.local_is_implicit(); }
 
-  /// Returns whether a spring acts on part i.
+  /// Returns whether a muscle or drive acts on part i.
+  bool is_actuated(std::size_t i) const {
+    const int part = static_cast<int>(i);
+    for (const DriveModel& drive : model_.drives()) {
+      std::vector<int> parts;
+      model_.append_parts(drive.on, parts);
+      if (std::find(parts.begin(), parts.end(), part) != parts.end()) return true;
+    }
+    return std::any_of(model_.springs().begin(), model_.springs().end(), [&](const SpringModel& s) {
+      return !s.functions.empty() && (s.a.part == part || s.b.part == part);
+    });
+  }
+  /// Returns whether a spring or drive acts on part i.
   bool is_pulled(std::size_t i) const {
+    if (is_actuated(i)) return true;
     return std::any_of(model_.springs().begin(), model_.springs().end(), [&](const SpringModel& s) {
       return s.spring->acts_at(state_.time()) &&
              (s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i));
@@ -301,6 +314,9 @@ class StableStepSearch {
     if (!is_implicit(m)) return;
     const Bound bound = bound_springs(model_, state_.time(), i);
     limit_by(stable_step_of(method_, bound.K, bound.D), "the springs at " + name);
+    if (is_actuated(i))
+      smallest_.uncounted = "the muscles and drives at " + name + " are not included, because " +
+                            std::string(method_.name()) + " integrates its elasticity implicitly";
     if (m.island >= 0)
       smallest_.uncounted = "the joints of parts that deform locally are not included, because " +
                             std::string(method_.name()) + " integrates their elasticity implicitly";

@@ -32,10 +32,10 @@ std::vector<std::string> skipped_work(const Model& model) {
                       std::to_string(moving - local));
   if (model.joints().empty())
     skipped.push_back("constraint Jacobians and multipliers, because there are no joints");
-  if (moving > 1 && model.springs().empty() && model.joints().empty())
-    skipped.push_back("coupled equations of the parts, because no spring or joint connects them");
-  if (model.springs().empty() && model.forces().empty() && model.torques().empty())
-    skipped.push_back("springs, point forces and torques, because there are none");
+  if (moving > 1 && model.load_connections().empty() && model.joints().empty())
+    skipped.push_back("coupled equations of the parts, because no load or joint connects them");
+  if (model.load_connections().empty() && model.loaded_parts().empty())
+    skipped.push_back("springs, forces, torques and drives, because there are none");
   if (model.body().gravity.isZero(0)) skipped.push_back("gravity, because it is zero");
   return skipped;
 }

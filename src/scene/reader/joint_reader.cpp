@@ -99,14 +99,14 @@ bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneF
 
 }  // namespace
 
-void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
+Joint* read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
-  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return;
-  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return;
+  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return nullptr;
+  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return nullptr;
   const auto info = std::find_if(all_joints().begin(), all_joints().end(),
                                  [&](const JointInfo& i) { return i.name == r.name(); });
   JointSetting setting{*from, *to};
-  if (!read_setting(r, info->keys, setting, faults)) return;
+  if (!read_setting(r, info->keys, setting, faults)) return nullptr;
   std::string name = name_of(r, info->name, body.joints().size());
   while (body.has_joint(name)) name += "'";  // another joint of the scene may have the generated name
   try {
@@ -115,8 +115,10 @@ void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
       joint.during(r.number("on"), r.number("off"));
     else if (r.given("on"))
       joint.during(r.number("on"));
+    return &joint;
   } catch (const std::invalid_argument& e) {
     faults.place(r.json(), e.what());
+    return nullptr;
   }
 }
 

@@ -17,7 +17,8 @@ JointSolver::Choice joint_solver(const std::string& name);
 /// Returns the stabilization of the joints of a scene. r: an object of stabilization_record().
 Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
-/// Reads a joint and adds the joint to the MultiBody. If the joint has faults, they are reported instead.
-void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
+/// Reads a joint without its drive, and adds the joint to the MultiBody. Returns the joint. If the joint has
+/// faults, they are reported instead, and the result is nullptr.
+Joint* read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
 
 }  // namespace pliant

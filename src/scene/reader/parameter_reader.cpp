@@ -35,7 +35,7 @@ ParameterReader::Entry ParameterReader::entry(const std::string& name, const Jso
   const auto find = [&](const char* key) { return value.is_object() ? value.find(key) : nullptr; };
   const bool in_matrix = std::count(in_matrix_.begin(), in_matrix_.end(), name) > 0;
   const JsonValue *flag = find("dynamic"), *initial = find("initial"), *stiffness = find("stiffness");
-  const bool dynamic = in_matrix || initial != nullptr || stiffness != nullptr ||
+  const bool dynamic = in_matrix || initial != nullptr || stiffness != nullptr || find("drive") != nullptr ||
                        find("initial_rate") != nullptr || (flag != nullptr && flag->boolean());
   return {part_.parameters()[part_.parameters().find(name)],
           value,
@@ -86,7 +86,7 @@ bool ParameterReader::contradicts(const Entry& e) {
   const std::string& name = e.parameter.name;
   if (e.dynamic && e.flag != nullptr && !e.flag->boolean()) {
     std::string because = "a row of \"stiffness_matrix\"";
-    for (const char* key : {"initial", "initial_rate", "stiffness"})
+    for (const char* key : {"initial", "initial_rate", "stiffness", "drive"})
       if (e.value.find(key) != nullptr) because = std::string("\"") + key + "\"";
     faults_.value(*e.flag, name + " has " + because + ", which only a dynamic parameter has; expected true");
     return true;

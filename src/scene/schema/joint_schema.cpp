@@ -1,10 +1,44 @@
 #include "joint_schema.h"
 
+#include <pliant/body/actuation/joint_coordinate.h>
 #include <pliant/body/joints/joint_registry.h>
+
+#include "drive_schema.h"
 
 namespace pliant {
 
 using namespace schema;
+
+namespace {
+
+/// Adds the keys of the limits of a joint of a type, if it has a coordinate.
+void add_limits(const std::string& type, const Type& orientation, Record& record) {
+  const int rows = coordinate_rows(type);
+  if (rows == 0) return;
+  const std::string unit = is_angle(type) ? "rad" : "m";
+  if (rows == 1) {
+    record.fields.push_back(
+        optional("limits", array(number(unbounded(), unit), 2, 2),
+                 std::string("Lower and upper limit of the ") + (is_angle(type) ? "angle." : "position.")));
+  } else {
+    record.fields.push_back(optional("max_swing", number(between(0, 3.14), unit),
+                                     "Largest angle between the axes of both sides."));
+    record.fields.push_back(optional("twist_limits", array(number(unbounded(), unit), 2, 2),
+                                     "Lower and upper limit of the twist about the axis."));
+    record.fields.push_back(optional(
+        "axis", vector3("1"), "Axis of twist and swing, in the frame of the part at \"to\", or of the world.",
+        "[1, 0, 0]"));
+    record.fields.push_back(optional(
+        "rotation", orientation,
+        "Orientation of the frame at \"from\" relative to the frame at \"to\" at which twist and swing "
+        "are zero. When absent, the relative orientation at time 0, with undeformed parts."));
+  }
+  record.fields.push_back(optional("restitution", number(between(0, 1), "1"),
+                                   "Share of the rate that a limit reverses. A slow rate does not rebound.",
+                                   "0"));
+}
+
+}  // namespace
 
 Type joint_type(const Type& end_point, const Type& orientation) {
   std::vector<Record> records;
@@ -40,6 +74,14 @@ Type joint_type(const Type& end_point, const Type& orientation) {
             "rotation", orientation,
             "Orientation of the frame at \"from\" relative to the frame at \"to\". When absent, the relative "
             "orientation at time 0, with undeformed parts."));
+    if (const int rows = coordinate_rows(info.name); rows > 0)
+      record.fields.push_back(optional(
+          "drive",
+          schema::record(rows == 3
+                             ? ball_drive_record()
+                             : (is_angle(info.name) ? drive_record("rad", "N m") : drive_record("m", "N"))),
+          "Spring, servo or motor on the coordinate of the joint."));
+    add_limits(info.name, orientation, record);
     record.fields.push_back(
         optional("on", number(at_least(0), "s"), "Time at which the joint begins to act.", "0"));
     record.fields.push_back(

@@ -7,6 +7,7 @@
 #include <pliant/scene/time_value.h>
 #include <pliant/simulate/choose_integrator.h>
 
+#include "drive_schema.h"
 #include "joint_schema.h"
 #include "local_schema.h"
 #include "scene/reader/coloring_reader.h"
@@ -202,13 +203,13 @@ Record spring_record() {
   return {
       "spring",
       "A linear spring and damper between two points. With rest length 0 the damper resists all relative "
-      "motion, otherwise only motion along the line of the spring.",
+      "motion, otherwise only motion along the line of the spring. A formula or key frames make it a muscle.",
       {optional("name", name(), "Name in the outputs."),
        required("from", end_point(), "First end.", "{\"world\": [0, 0, 1]}"),
        required("to", end_point(), "Second end.", "{\"part\": \"ball\", \"at\": {\"u\": 1.5708, \"v\": 0}}"),
-       required("stiffness", number(at_least(0), "N/m"), "Stiffness.", "100"),
-       optional("damping", number(at_least(0), "N s/m"), "Damping.", "0"),
-       optional("rest_length", number(at_least(0), "m"), "Length without force.", "0"),
+       required("stiffness", state_function("N/m", at_least(0)), "Stiffness.", "100"),
+       optional("damping", state_function("N s/m", at_least(0)), "Damping.", "0"),
+       optional("rest_length", state_function("m", at_least(0)), "Length without force.", "0"),
        optional("on", number(at_least(0), "s"), "Time at which the spring begins to act.", "0"),
        optional("off", number(above(0), "s"),
                 "Time at which the spring ceases to act; when absent, never.")}};
@@ -225,7 +226,7 @@ Record force_record() {
           {optional("name", name(), "Name in the outputs."),
            required("part", name(), "Name of the part.", "\"ball\""),
            required("at", material_point(), "Point of application.", "{\"u\": 0, \"v\": 0}"),
-           required("force", time_vector("N"), "The force.", "[0, 0, \"10 * sin(t)\"]"),
+           required("force", state_vector("N"), "The force.", "[0, 0, \"10 * sin(t)\"]"),
            optional("frame", frame_type(), "Axes of its components.", "\"world\"")}};
 }
 
@@ -237,7 +238,7 @@ Record torque_record() {
            optional("against", name(),
                     "Name of the part on which the opposite torque acts, for a motor or a muscle between two "
                     "parts. When absent, the torque is external."),
-           required("torque", time_vector("N m"), "The torque.", "[0, 0, 1]"),
+           required("torque", state_vector("N m"), "The torque.", "[0, 0, 1]"),
            optional("frame", frame_type(), "Axes of its components.", "\"world\"")}};
 }
 
@@ -248,6 +249,18 @@ Record track_record() {
            required("part", name(), "Name of the part.", "\"ball\""),
            required("at", material_point(), "The point.", "{\"u\": 0, \"v\": 0}"),
            optional("color", color(), "Colour of the line.", "\"#d03020\"")}};
+}
+
+Record sensor_record() {
+  return {
+      "sensor",
+      "A named quantity, which trajectory.csv records and formulas may read.",
+      {required("name", name(), "Name in formulas and outputs.", "\"height\""),
+       required("value", state_function("", unbounded()),
+                "Its value: a formula of t, of parts (ball.x, y, z, vx, vy, vz, omega.x, PARAMETER, "
+                "PARAMETER_dot), joints (angle, position, twist, swing_y, swing_z, length, rate), springs "
+                "(length, rate), tracks (x, y, z, vx, vy, vz) and of the sensors before it.",
+                "\"ball.z\"")}};
 }
 
 Record output_record() {
@@ -313,6 +326,8 @@ Record make_scene_record() {
        optional("springs", array(record(spring_record())), "Springs between parts or to the world.", "[]"),
        optional("forces", array(record(force_record())), "Forces at material points.", "[]"),
        optional("torques", array(record(torque_record())), "Torques on parts.", "[]"),
+       optional("sensors", array(record(sensor_record())),
+                "Named quantities that are recorded and that formulas may read.", "[]"),
        optional("tracks", array(record(track_record())), "Material points whose paths are recorded.", "[]"),
        optional("output", record(output_record()), "Recorded states, tables and pictures.", "{}"),
        optional("coloring", record(coloring_record()), "Colours of parts by their deformation."),
@@ -330,7 +345,8 @@ const Type& parameter_type() {
            record(
                {"parameter",
                 "A global parameter. It is dynamic, a degree of freedom, if \"dynamic\" is true, or if an "
-                "initial value, an initial rate, a stiffness or a row of \"stiffness_matrix\" is given. "
+                "initial value, an initial rate, a stiffness, a drive or a row of \"stiffness_matrix\" is "
+                "given. "
                 "Otherwise it is frozen at its rest value.",
                 {optional("rest", time_function("m, rad or 1"),
                           "Rest value; for a dynamic parameter it may change in time."),
@@ -340,12 +356,14 @@ const Type& parameter_type() {
                  optional("initial_rate", number(unbounded(), "m/s, rad/s or 1/s"), "Rate at time 0.", "0"),
                  optional("stiffness", number(at_least(0), "N/m for a length, else N m"),
                           "K of the energy 1/2 K (q - rest)^2.", "0"),
+                 optional("drive", record(drive_record("", "")),
+                          "Servo, spring or motor on the parameter, which is then dynamic."),
                  optional("min", number(unbounded(), "m, rad or 1"), "Lower limit of a dynamic parameter."),
                  optional("max", number(unbounded(), "m, rad or 1"),
                           "Upper limit of a dynamic parameter.")}})})
           .expecting(
-              "a number or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
-              "\"max\"}")
+              "a number or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", "
+              "\"drive\", \"min\", \"max\"}")
           .defined_as("parameter_value");
   return type;
 }

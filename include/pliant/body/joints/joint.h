@@ -66,6 +66,9 @@ class Joint {
   virtual int rows() const = 0;
   /// Returns whether the constraint is C >= 0 with a multiplier lambda >= 0, instead of C = 0.
   virtual bool one_sided() const = 0;
+  /// Returns the share, from 0 to 1, of the rate -C_dot that is reversed when a one-sided joint stops a
+  /// motion.
+  virtual double restitution() const { return 0; }
 
   /// The points of the first side, then the points of the second side. All points of a side are on one part,
   /// or all are points of the world.
@@ -114,6 +117,12 @@ struct HasFault : std::false_type {};
 template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
+/// Whether a formula of a one-sided joint has a member `restitution`.
+template <class F, class = void>
+struct HasRestitution : std::false_type {};
+template <class F>
+struct HasRestitution<F, std::void_t<decltype(std::declval<const F&>().restitution)>> : std::true_type {};
+
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
 /// rows; `first` and `second`, the numbers of points of its sides (second = 0 for a joint to the world
 /// whose formula needs no second point); and `one_sided`. The function of the formula is
@@ -153,6 +162,10 @@ class JointOf final : public Joint {
   const char* type() const override { return F::name; }
   int rows() const override { return kRows; }
   bool one_sided() const override { return F::one_sided; }
+  double restitution() const override {
+    if constexpr (HasRestitution<F>::value) return formula_.restitution;
+    return 0;
+  }
   const F& formula() const { return formula_; }
 
   void evaluate(double t, const PointMotion<double>* x, JointRows<double>& out) const override {

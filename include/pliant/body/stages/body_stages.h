@@ -69,6 +69,9 @@ void start_evaluation(const Evaluation<S>& e) {
   e.work.without_inertia.resize(n_parts);
   e.work.v_dot.resize(e.model().n_v());
   e.work.power.setConstant(S(0.0));
+  forget_coordinates(e);
+  if (e.modes != nullptr) e.work.inputs = e.modes->inputs;
+  if (e.fixed_modes != nullptr) e.work.inputs = e.fixed_modes->inputs;
   choose_rigid_islands<S>(e);
   list_parts_before_joints<S>(e);
 }
@@ -119,8 +122,8 @@ void evaluate_parts(const Evaluation<S>& e) {
   for (RigidWorkspace& rigid : e.work.rigid) rigid.prepared = rigid.prepared || rigid.used;
 }
 
-/// Stage 3 for loads: f_q = L^T f of springs, forces and torques; then stage 5 of the parts on which loads
-/// act.
+/// Stage 3 for loads: f_q = L^T f of springs, forces, torques and drives; then stage 5 of the parts on which
+/// loads act or whose state they read.
 template <class S>
 void evaluate_loads(const Evaluation<S>& e) {
   const std::vector<int>& loaded = e.model().loaded_parts();

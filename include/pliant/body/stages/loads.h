@@ -1,10 +1,81 @@
-// Stage 3, loads: the forces of springs, the forces at points and the torques, with their powers. Forces are
-// gathered at the ports of the parts; part_stages.h turns them into f_q = L^T f, Eq. (11).
+// Stage 3, loads: the forces of springs, the forces at points, the torques and the drives, with their powers.
+// Forces are gathered at the ports of the parts; part_stages.h turns them into f_q = L^T f, Eq. (11).
 #pragma once
 
 #include <pliant/body/stages/evaluation.h>
+#include <pliant/body/stages/signals.h>
 
 namespace pliant::detail {
+
+/// Returns the force of a point force, N, world. at: position and velocity of its point.
+template <class S>
+Vec3<S> force_of(const Evaluation<S>& e, const ForceModel& f, const PortMotion<S>& at) {
+  const PointForce& force = *f.force;
+  if (force.custom) {
+    Vec3<double> x, x_dot;
+    for (int r = 0; r < 3; ++r) {
+      x[r] = plain(at.x[r]);
+      x_dot[r] = plain(at.x_dot[r]);
+    }
+    return force.custom(e.t, x, x_dot).template cast<S>();
+  }
+  const Vec3<S> value = vector_of(e, force.force, f.components);
+  return force.frame == Frame::body ? Vec3<S>(e.part_work(f.at.part).R * value) : value;
+}
+
+/// Returns the elastic and the damping force of a spring on its end a, N, world; zero for a spring with a
+/// rest length and no length, which has no direction.
+template <class S>
+struct SpringForce {
+  Vec3<S> elastic, damping;
+};
+template <class S>
+SpringForce<S> force_of(const Evaluation<S>& e, const SpringModel& s, const PortMotion<S>& a,
+                        const PortMotion<S>& b) {
+  const Spring& spring = *s.spring;
+  auto number = [&](std::size_t k, const StateFunction& function) {
+    return s.functions.empty() ? S(function.constant()) : value_of(e, s.functions[k]);
+  };
+  const S stiffness = number(0, spring.stiffness), damping = number(1, spring.damping);
+  const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
+  if (spring.rest_length.is_constant() && spring.rest_length.constant() == 0)
+    return {d * stiffness, d_dot * damping};
+  const S length2 = d.dot(d);
+  if (plain(length2) == 0) return {Vec3<S>::Constant(S(0.0)), Vec3<S>::Constant(S(0.0))};
+  const S length = math::sqrt(length2);
+  const Vec3<S> along = d / length;
+  return {along * S((length - number(2, spring.rest_length)) * stiffness),
+          along * S(along.dot(d_dot) * damping)};
+}
+
+/// Returns the torque of a load, N m, in its frame.
+template <class S>
+Vec3<S> torque_of(const Evaluation<S>& e, const TorqueModel& m) {
+  return vector_of(e, m.torque->torque, m.components);
+}
+
+/// Returns the two terms of the force of a drive along its coordinate x, N or N m: that of its stiffness and
+/// `force`, and that of its damping. If a bound limits their sum, it scales both.
+template <class S>
+struct DriveForce {
+  S elastic, damping;
+};
+template <class S>
+DriveForce<S> force_of(const Evaluation<S>& e, const DriveModel& m, const S& x, const S& x_dot) {
+  const Drive& drive = *m.drive;
+  S error = value_of(e, m.target) - x;
+  if (drive.angle) error = error - S(2 * kPi * std::round(plain(error) / (2 * kPi)));
+  const S target_rate = drive.target_rate ? value_of(e, m.target_rate) : S(drive.target.of_time().at(e.t).d);
+  DriveForce<S> f{value_of(e, m.stiffness) * error + value_of(e, m.force),
+                  value_of(e, m.damping) * S(target_rate - x_dot)};
+  const S sum = f.elastic + f.damping;
+  if (const double size = std::abs(plain(sum)); size > drive.max_force) {
+    const S scale = S(plain(sum) < 0 ? -drive.max_force : drive.max_force) / sum;
+    f.elastic = f.elastic * scale;
+    f.damping = f.damping * scale;
+  }
+  return f;
+}
 
 /// Evaluates the loads of a model in a fixed order. The positions of all parts with loads must be in the
 /// workspace.
@@ -18,22 +89,10 @@ class LoadStage {
     for (const SpringModel& spring : model_.springs()) add(spring);
     for (const ForceModel& force : model_.forces()) add(force);
     for (const TorqueModel& torque : model_.torques()) add(torque);
+    for (const DriveModel& drive : model_.drives()) add(drive);
   }
 
  private:
-  /// Position (m) and velocity (m/s) of an end of a load, world.
-  struct End {
-    Vec3<S> x, x_dot;
-  };
-
-  End end_of(const PortRef& ref, const Point& point) const {
-    if (ref.part >= 0) {
-      const PartWorkspace<S>& w = e_.part_work(ref.part);
-      return {w.port_x[static_cast<std::size_t>(ref.port)], w.port_x_dot[static_cast<std::size_t>(ref.port)]};
-    }
-    const Vec3<Taylor2<double>> x = point.world.at(e_.t);
-    return {Vec3<S>(S(x[0].v), S(x[1].v), S(x[2].v)), Vec3<S>(S(x[0].d), S(x[1].d), S(x[2].d))};
-  }
   /// Adds a force to a port. A force on the world has no effect.
   void push(const PortRef& ref, const Vec3<S>& force, double sign) {
     if (ref.part < 0) return;
@@ -45,53 +104,60 @@ class LoadStage {
 
   void add(const SpringModel& s) {
     if (!s.spring->acts_at(e_.t)) return;
-    const End a = end_of(s.a, s.spring->a), b = end_of(s.b, s.spring->b);
-    const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
-    Vec3<S> pull, damping;  // on a, towards b
-    if (s.spring->rest_length == 0) {
-      pull = d * S(s.spring->stiffness);
-      damping = d_dot * S(s.spring->damping);
-    } else {
-      const S length2 = d.dot(d);
-      if (plain(length2) == 0) return;  // no direction, no force; the step reports NaN
-      const S length = math::sqrt(length2);
-      const Vec3<S> along = d / length;
-      pull = along * S((length - s.spring->rest_length) * s.spring->stiffness);
-      damping = along * S(along.dot(d_dot) * s.spring->damping);
-    }
-    const Vec3<S> force = pull + damping;
+    const PortMotion<S> a = motion_of(e_, s.a, s.spring->a), b = motion_of(e_, s.b, s.spring->b);
+    const SpringForce<S> pull = force_of(e_, s, a, b);  // on a, towards b
+    const Vec3<S> force = pull.elastic + pull.damping, d_dot = b.x_dot - a.x_dot;
     push(s.a, force, 1);
     push(s.b, force, -1);
-    power(Work::spring_damping) -= damping.dot(d_dot);
+    power(Work::spring_damping) -= pull.damping.dot(d_dot);
+    if (!s.functions.empty()) power(Work::actuation) -= pull.elastic.dot(d_dot);
     // The prescribed motion of an end does work against the force of the spring on this end.
     if (!moves(s.a)) power(Work::anchors) -= force.dot(a.x_dot);
     if (!moves(s.b)) power(Work::anchors) += force.dot(b.x_dot);
   }
 
   void add(const ForceModel& f) {
-    const End at = end_of(f.at, f.force->at);
-    Vec3<S> force;
-    if (f.force->custom) {
-      Vec3<double> x, x_dot;
-      for (int r = 0; r < 3; ++r) {
-        x[r] = plain(at.x[r]);
-        x_dot[r] = plain(at.x_dot[r]);
-      }
-      force = f.force->custom(e_.t, x, x_dot).template cast<S>();
-    } else {
-      force = f.force->force.value(e_.t).template cast<S>();
-      if (f.force->frame == Frame::body) force = (e_.part_work(f.at.part).R * force).eval();
-    }
+    const PortMotion<S> at = motion_of(e_, f.at, f.force->at);
+    const Vec3<S> force = force_of(e_, f, at);
     push(f.at, force, 1);
     if (moves(f.at)) power(Work::forces) += force.dot(at.x_dot);
   }
 
   void add(const TorqueModel& m) {
-    Vec3<S> torque = m.torque->torque.value(e_.t).template cast<S>();
+    Vec3<S> torque = torque_of(e_, m);
     turn(m.part, torque, m.torque->frame);
     if (m.against < 0) return;
     if (m.torque->frame == Frame::body) torque = (e_.part_work(m.part).R * torque).eval();
     turn(m.against, -torque, Frame::world);
+  }
+
+  void add(const DriveModel& m) {
+    const S x = signal_value(e_, m.on), x_dot = signal_rate(e_, m.on);
+    const DriveForce<S> f = force_of(e_, m, x, x_dot);
+    const S force = f.elastic + f.damping;
+    if (m.on.place >= 0)
+      push_coordinate(m.on, force);
+    else if (e_.part(m.on.part).q0 >= 0)
+      e_.part_work(m.on.part).f[6 + m.on.signal->index] += force;
+    if (m.drive->is_passive()) {
+      power(Work::spring_damping) += f.damping * x_dot;
+      return;
+    }
+    power(Work::actuation) += force * x_dot;
+  }
+  /// Adds the forces C_x^T f of a force f along a coordinate to the ports of its points. The prescribed
+  /// motion of a point does work against its force.
+  void push_coordinate(const SignalModel& on, const S& force) {
+    const JointRows<S>& rows = coordinate_rows(e_, on.place);
+    const std::vector<PortRef>& at = model_.coordinates()[static_cast<std::size_t>(on.place)].at;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Vec3<S> along =
+          rows.C_x.row(on.signal->index).template segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+      push(at[k], along * force, 1);
+      if (moves(at[k])) continue;
+      const Point& point = model_.coordinates()[static_cast<std::size_t>(on.place)].coordinate->points()[k];
+      power(Work::anchors) -= S(along.dot(motion_of(e_, at[k], point).x_dot)) * force;
+    }
   }
   /// Adds a torque to f of a part, and its power to work.power. A torque on a part without coordinates has no
   /// effect.

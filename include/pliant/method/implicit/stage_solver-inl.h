@@ -90,8 +90,7 @@ PLIANT_INLINE StageSolver::StageSolver(const Model& model)
     if (a < 0 || b < 0 || model.parts()[at(a)].q0 < 0 || model.parts()[at(b)].q0 < 0) return;
     set[at(stage_solver::find_root(set, std::max(a, b)))] = stage_solver::find_root(set, std::min(a, b));
   };
-  for (const SpringModel& spring : model.springs()) unite(spring.a.part, spring.b.part);
-  for (const TorqueModel& torque : model.torques()) unite(torque.part, torque.against);
+  for (const auto& [one, other] : model.load_connections()) unite(one, other);
   for (const Island& island : model.islands())
     for (const int part : island.parts) unite(island.parts.front(), part);
   std::vector<int> cluster_of_root(at(n), -1);

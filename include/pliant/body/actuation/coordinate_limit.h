@@ -1,0 +1,86 @@
+// Limits of the coordinates of joints: one-sided rows C >= 0. A limit that stops a motion returns the share
+// `restitution` of the rate.
+//   hinge   C = size (half - sign (x - middle)),   x: the angle
+//   slider  C = half - sign (x - middle),          x: the position
+//   ball    C = size (max^2 - theta^2) / (2 max),  theta: the angle between the axes a_1 and b_1 (swing)
+//   ball    C = size (half - sign (x - middle)),   x: the twist, 2 atan2(Q_32 - Q_23, 1 + tr Q), Q = b^T a
+// The range of x is [middle - half, middle + half]; sign is 1 for its upper and -1 for its lower end. x -
+// middle is in (-pi, pi], so a range of angles has at most one turn.
+#pragma once
+
+#include <pliant/body/actuation/hinge_angle.h>
+#include <pliant/body/joints/hinge.h>
+#include <pliant/body/material_frame.h>
+
+namespace pliant {
+
+/// The numbers of a limit.
+struct LimitRange {
+  double middle = 0, half = 1;  ///< rad or m
+  double sign = 1;
+  double size = 1;         ///< factor from angles (rad) to lengths, m
+  double restitution = 0;  ///< from 0 to 1
+};
+
+struct HingeLimit : LimitRange {
+  static constexpr const char* name = "hinge limit";
+  static constexpr const char* formula = "size (half - sign (angle - middle)) >= 0";
+  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = true, framed = true;
+  MaterialFrame from, to;
+
+  template <class T>
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    const Vec3<T> in_b = b.axes.transpose() * a.axes.col(1);
+    const double c = std::cos(middle), s = std::sin(middle);
+    const T x = angle_of(T(in_b[1] * c + in_b[2] * s), T(in_b[2] * c - in_b[1] * s));
+    return Vec<T, rows>(T((T(half) - x * sign) * size));
+  }
+};
+
+struct SliderLimit : LimitRange {
+  static constexpr const char* name = "slider limit";
+  static constexpr const char* formula = "half - sign (position - middle) >= 0";
+  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = true, framed = true;
+  MaterialFrame from, to;
+
+  template <class T>
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    const T x = b.axes.col(0).dot(a.x - b.x) - T(middle);
+    return Vec<T, rows>(T(T(half) - x * sign));
+  }
+};
+
+struct SwingLimit : LimitRange {  // half: the largest swing
+  static constexpr const char* name = "swing limit";
+  static constexpr const char* formula = "size (max^2 - swing^2) / (2 max) >= 0";
+  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = true, framed = true;
+  MaterialFrame from, to;
+
+  template <class T>
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    const Vec<T, 2> swing = Hinge::axis_angle(Vec3<T>(a.axes.col(0)), b.axes);
+    return Vec<T, rows>(T((T(half * half) - swing.dot(swing)) * (size / (2 * half))));
+  }
+};
+
+struct TwistLimit : LimitRange {
+  static constexpr const char* name = "twist limit";
+  static constexpr const char* formula = "size (half - sign (twist - middle)) >= 0";
+  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = true, framed = true;
+  MaterialFrame from, to;
+
+  template <class T>
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    const Mat3<T> Q = b.axes.transpose() * a.axes;
+    const T cosine = Q(0, 0) + Q(1, 1) + Q(2, 2) + T(1.0), sine = Q(2, 1) - Q(1, 2);
+    const double c = std::cos(middle / 2), s = std::sin(middle / 2);
+    const T x = angle_of(T(cosine * c + sine * s), T(sine * c - cosine * s)) * T(2.0);
+    return Vec<T, rows>(T((T(half) - x * sign) * size));
+  }
+};
+
+}  // namespace pliant

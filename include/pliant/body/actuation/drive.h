@@ -1,0 +1,36 @@
+// Drives: springs, dampers, servos and motors that act on a coordinate of a joint or on a parameter of a
+// part.
+//   F = k (target - x) + c (target_rate - x_dot) + force,   |F| <= max_force
+// Here x is the coordinate. For an angle, target - x is taken in [-pi, pi].
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <pliant/body/actuation/state_function.h>
+
+namespace pliant {
+
+struct Drive {
+  std::string name;
+  Signal on;             ///< the coordinate x: of kind coordinate or parameter
+  bool angle = false;    ///< whether x is an angle
+  StateFunction target;  ///< m or rad
+  /// Target of the rate, per second; by default the rate of a target that is a function of time, else 0.
+  std::optional<StateFunction> target_rate;
+  StateFunction stiffness;                                     ///< k, N/m or N m
+  StateFunction damping;                                       ///< c, N s/m or N m s
+  StateFunction force;                                         ///< N or N m
+  double max_force = std::numeric_limits<double>::infinity();  ///< N or N m
+
+  /// Whether the drive is a spring and damper with constants. Its energy k (x - target)^2 / 2 is then in the
+  /// ledger; otherwise the ledger has the work of F as actuation.
+  bool is_passive() const {
+    return target.is_constant() && !target_rate && stiffness.is_constant() && damping.is_constant() &&
+           force.is_constant() && force.constant() == 0 &&
+           !(max_force < std::numeric_limits<double>::infinity());
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// The angle of a hinge: the rotation of the first side relative to the second about the pin, in (-pi, pi].
+//   C = atan2(a_2 . b_3, a_2 . b_2)
+// Here a and b are the frames of the hinge at x_0 and y_0; b_1 is the direction of the pin.
+#pragma once
+
+#include <pliant/body/material_frame.h>
+#include <pliant/math/rotation_vector.h>
+
+namespace pliant {
+
+/// Returns the angle in (-pi, pi] of the direction (c, s), which need not be of length 1.
+template <class T>
+T angle_of(const T& c, const T& s) {
+  const T length = math::sqrt(T(c * c + s * s)), cosine = c / length, sine = s / length;
+  const T sine2 = sine * sine;
+  if (plain(cosine) >= 0) return sine * angle_over_sine(cosine, sine2);
+  return T(plain(sine) < 0 ? -kPi : kPi) - sine * angle_over_sine(T(-cosine), sine2);
+}
+
+struct HingeAngle {
+  static constexpr const char* name = "hinge angle";
+  static constexpr const char* formula = "atan2(a_2 . b_3, a_2 . b_2)";
+  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = false, framed = true;
+  MaterialFrame from, to;
+
+  template <class T>
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    const Vec3<T> in_b = b.axes.transpose() * a.axes.col(1);
+    return Vec<T, rows>(angle_of(in_b[1], in_b[2]));
+  }
+};
+
+}  // namespace pliant

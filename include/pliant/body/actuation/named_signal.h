@@ -1,0 +1,35 @@
+// Signals by their names, and formulas of the state from their text. The names of quantities are
+//   part    x, y, z, vx, vy, vz, omega.x, omega.y, omega.z, PARAMETER, PARAMETER_dot (dynamic parameters)
+//   joint   hinge: angle, rate; slider: position, rate; ball: twist, swing_y, swing_z, twist_rate,
+//   swing_y_rate,
+//           swing_z_rate; rod and string: length, rate
+//   spring  length, rate
+//   point   x, y, z, vx, vy, vz
+// A sensor and an input have no quantity: their name is the signal.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <pliant/body/actuation/state_function.h>
+
+namespace pliant {
+
+class MultiBody;
+
+/// Material points by their names.
+using NamedPoints = std::map<std::string, Point>;
+
+/// Returns the signal of a quantity of an owner, or nothing if nothing has the name of the owner. Adds the
+/// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner has no
+/// such quantity, or if two owners have it.
+std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, const std::string& quantity,
+                                   const NamedPoints& points = {});
+
+/// Returns the function of a formula of t and of named quantities, for example "-20 * ball.z". Throws
+/// FormulaError (math/formula.h) for an error in the text or an unknown name, and std::invalid_argument for
+/// more than kMaxSignals quantities.
+StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {});
+
+}  // namespace pliant

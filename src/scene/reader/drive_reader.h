@@ -1,0 +1,21 @@
+// Reading the drives of joints and of parameters, and the limits of joints.
+#pragma once
+
+#include <pliant/body/multibody.h>
+#include <pliant/scene/reader/reader.h>
+
+#include "state_reader.h"
+
+namespace pliant {
+
+/// Reads a drive. r: an object of drive_record(). Faults are reported; returns whether there are none.
+bool read_drive(const Reader& r, const StateReader& states, Drive& drive);
+
+/// Adds the limits of a joint. r: the joint. Faults are reported.
+void read_joint_limits(const Reader& r, const Joint& joint, SceneFaults& faults, MultiBody& body);
+
+/// Adds the drives of a joint: one for a hinge or slider, three for a ball joint. r: its key "drive". Faults
+/// are reported.
+void read_joint_drive(const Reader& r, const Joint& joint, const StateReader& states, MultiBody& body);
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+// Reading functions of time and state: a formula may read parts, joints, springs, tracks and sensors by their
+// names.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pliant/body/actuation/state_function.h>
+#include <pliant/scene/scene.h>
+
+#include "scene/scene_faults.h"
+#include "time_reader.h"
+
+namespace pliant {
+
+class StateReader {
+ public:
+  /// scene: its parts, joints, springs, tracks and sensors are the names that formulas may read; it must
+  /// outlive the reader. Coordinates of joints that a formula reads are added to the MultiBody.
+  StateReader(Scene& scene, SceneFaults& faults)
+      : scene_(scene), times_(scene.end, faults), faults_(faults) {}
+
+  /// Returns the function that a validated value of type schema::state_function describes, or nothing if it
+  /// is faulty; the fault is reported.
+  std::optional<StateFunction> function(const JsonValue& value) const;
+  /// Returns the three functions under a key, or nothing if the key is absent or a function is faulty.
+  std::optional<StateVector> vector(const Reader& r, const char* key) const;
+
+ private:
+  Scene& scene_;
+  TimeReader times_;
+  SceneFaults& faults_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,49 @@
+#include "drive_schema.h"
+
+#include <utility>
+
+#include <pliant/scene/time_value.h>
+
+namespace pliant {
+
+using namespace schema;
+
+namespace {
+
+Record drive_of(std::string name, std::string what, Field target, Field rate, const std::string& force,
+                const std::string& per) {
+  return {
+      std::move(name),
+      "A spring, servo or motor on " + what +
+          ": force = stiffness (target - x) + damping (rate - rate of x) + force. With constants only, its "
+          "energy is that of a spring; otherwise the ledger has its work as actuation.",
+      {std::move(target), std::move(rate),
+       optional("stiffness", state_function(force + "/" + per, at_least(0)), "Stiffness.", "0"),
+       optional("damping", state_function(force + " s/" + per, at_least(0)), "Damping.", "0"),
+       optional("force", state_function(force, unbounded()), "Force in addition.", "0"),
+       optional("max_force", number(above(0), force),
+                "Bound on the magnitude of the force; when absent, there is none.")}};
+}
+
+}  // namespace
+
+Record drive_record(const std::string& unit, const std::string& force) {
+  return drive_of(
+      "drive", "a coordinate x of a joint, or on a parameter x",
+      optional("target", state_function(unit, unbounded()), "Target of x.", "0"),
+      optional("rate", state_function(unit + "/s", unbounded()),
+               "Target of the rate of x; when absent, the rate of a target that is a function of t, "
+               "otherwise 0."),
+      force, unit);
+}
+
+Record ball_drive_record() {
+  return drive_of("ball_drive", "the rotation of a ball joint (twist, swing_y, swing_z)",
+                  optional("target", state_vector("rad"), "Target of the rotation vector.", "[0, 0, 0]"),
+                  optional("rate", state_vector("rad/s"),
+                           "Target of its rate; when absent, the rate of a target that is a function of t, "
+                           "otherwise 0."),
+                  "N m", "rad");
+}
+
+}  // namespace pliant

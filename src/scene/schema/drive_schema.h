@@ -1,0 +1,16 @@
+// The records of drives of joints and parameters (body/actuation/drive.h).
+#pragma once
+
+#include <string>
+
+#include <pliant/scene/schema/schema.h>
+
+namespace pliant {
+
+/// Returns the record of a drive on a coordinate. unit: of the coordinate, "m" or "rad"; force: of the force
+/// along it.
+schema::Record drive_record(const std::string& unit, const std::string& force);
+/// Returns the record of a drive of a ball joint, whose target has three components.
+schema::Record ball_drive_record();
+
+}  // namespace pliant

@@ -1,0 +1,279 @@
+// Actuation in scene files: drives and limits of joints, drives of parameters, muscles, forces and sensors
+// that read the state; and messages about faulty names.
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pliant/scene/read_scene.h>
+#include <pliant/simulate/simulation.h>
+
+#include "catch.h"
+#include "motion.h"
+
+namespace actuation_scenes_test {
+
+using namespace pliant;
+
+namespace {
+
+/// A scene with its simulation.
+struct Run {
+  explicit Run(const std::string& text, const std::string& method = "rk4", double tolerance = 0) {
+    Diagnostics diagnostics;
+    scene = parse_scene("s.json", text, {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    simulation = std::make_unique<Simulation>(scene->body, method, 1, tolerance);
+  }
+  double sensor(std::size_t k = 0) {
+    Workspace<double> work;
+    const State& state = simulation->state();
+    simulation->dynamics().accelerations(state.time(), state.q, state.v, state, work);
+    return simulation->dynamics().sensor_values(state.time(), state, work)[static_cast<Eigen::Index>(k)];
+  }
+  std::unique_ptr<Scene> scene;
+  std::unique_ptr<Simulation> simulation;
+};
+
+/// A bar that a hinge along y connects to the world at its end; gravity is zero. The distance of its centre
+/// from the hinge is 0.5 m. keys: more keys of the hinge; more: more keys of the scene.
+std::string hinged_bar(const std::string& keys, const std::string& more = "") {
+  return R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "bar", "shape": "box", "parameters": {"a1": 0.5, "a2": 0.05, "a3": 0.05},
+               "inertia": {"mass": 2, "moments": [[0.01, 0, 0], [0, 0.3, 0], [0, 0, 0.3]]},
+               "position": [0.5, 0, 0]}],
+    "joints": [{"type": "hinge", "name": "pin", "from": {"part": "bar", "at": {"direction": [-1, 0, 0]}},
+                "to": {"world": [0, 0, 0]}, "axis": [0, 1, 0])json" +
+         (keys.empty() ? "" : ", " + keys) +
+         "}],\n\"sensors\": [{\"name\": \"angle\", \"value\": \"pin.angle\"}," +
+         R"json({"name": "rate", "value": "pin.rate"}])json" + (more.empty() ? "" : ", " + more) + "}";
+}
+constexpr double kInertia = 0.3 + 2 * 0.5 * 0.5;  // of the bar about the hinge, kg m^2
+
+/// Returns x and x_dot of x_ddot = -(k (x - 1) + c x_dot) / m from rest at x = 0, with c^2 < 4 k m.
+std::array<double, 2> step_response(double k, double c, double m, double t) {
+  const double decay = c / (2 * m), omega = std::sqrt(k / m - decay * decay), e = std::exp(-decay * t);
+  return {1 - e * (std::cos(omega * t) + decay / omega * std::sin(omega * t)),
+          e * (omega + decay * decay / omega) * std::sin(omega * t)};
+}
+
+std::string error_of(const std::string& text) {
+  Diagnostics diagnostics;
+  try {
+    parse_scene("s.json", text, {}, diagnostics);
+  } catch (const SceneError&) {
+  }
+  return diagnostics.text();
+}
+
+}  // namespace
+
+TEST_CASE("a servo turns a hinge to its target with the response of a damped oscillator", "[actuation]") {
+  Run run(hinged_bar(R"json("drive": {"target": "1", "stiffness": 20, "damping": 3})json"), "dop853", 1e-11);
+  for (int i = 0; i < 10; ++i) {
+    run.simulation->step(0.1);
+    const auto expected = step_response(20, 3, kInertia, run.simulation->time());
+    CHECK(run.sensor(0) == Approx(expected[0]).margin(1e-9));
+    CHECK(run.sensor(1) == Approx(expected[1]).margin(1e-8));
+  }
+}
+
+TEST_CASE("a servo of a ball joint turns it to a rotation vector, with an equal response about each axis",
+          "[actuation]") {
+  Run run(R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": 0.5},
+               "inertia": {"mass": 2, "moments": [[0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]]}}],
+    "joints": [{"type": "ball", "name": "neck", "from": {"part": "ball", "at": {"u": 0, "v": 0, "w": 0}},
+                "to": {"world": [0, 0, 0]}, "axis": [0, 0, 1],
+                "drive": {"target": [0, 0.6, 0.8], "stiffness": 20, "damping": 1}}],
+    "sensors": [{"name": "size", "value": "sqrt(neck.twist^2 + neck.swing_y^2 + neck.swing_z^2)"},
+                {"name": "share", "value": "neck.swing_y / neck.swing_z"}]})json",
+          "dop853", 1e-11);
+  for (int i = 0; i < 5; ++i) {
+    run.simulation->step(0.1);
+    CHECK(run.sensor(0) == Approx(step_response(20, 1, 0.3, run.simulation->time())[0]).margin(1e-9));
+    CHECK(run.sensor(1) == Approx(0.75).margin(1e-8));
+  }
+}
+
+TEST_CASE("a motor accelerates by its largest torque until it reaches its rate", "[actuation]") {
+  Run run(hinged_bar(R"json("drive": {"rate": 2, "damping": 1e4, "max_force": 4})json"), "dormand_prince",
+          1e-9);
+  const double acceleration = 4 / kInertia;
+  run.simulation->step(0.2);
+  CHECK(run.sensor(1) == Approx(acceleration * 0.2).epsilon(1e-7));
+  CHECK(run.sensor(0) == Approx(acceleration * 0.02).epsilon(1e-7));
+  run.simulation->step(0.3);
+  CHECK(run.sensor(1) == Approx(2).epsilon(1e-3));
+}
+
+TEST_CASE("a drive with constants is a spring, whose energy is in the ledger", "[actuation]") {
+  Run spring(hinged_bar(R"json("drive": {"target": 0.5, "stiffness": 20, "damping": 3})json"), "rk4");
+  Run servo(hinged_bar(R"json("drive": {"target": "0.5 + 0 * t", "stiffness": 20, "damping": 3})json"),
+            "rk4");
+  CHECK(spring.simulation->ledger().springs == Approx(0.5 * 20 * 0.25));
+  for (Run* run : {&spring, &servo}) {
+    test::run(*run->simulation, 1, 2000);
+    CHECK(std::abs(run->simulation->ledger().balance) < 1e-10);
+  }
+  CHECK(spring.simulation->state().q == servo.simulation->state().q);
+  CHECK(spring.simulation->ledger().work[static_cast<int>(Work::actuation)] == 0);
+  CHECK(servo.simulation->ledger().springs == 0);
+  CHECK(servo.simulation->ledger().work[static_cast<int>(Work::actuation)] > 0.1);
+}
+
+TEST_CASE("a limit of a hinge returns the restitution of the rate", "[actuation]") {
+  const std::string limits = R"json("limits": [-1, 0.7], "restitution": 0.6,
+                                    "drive": {"force": 4, "max_force": 4})json";
+  // A constant torque moves the bar from rest; after the impact at 0.7 rad it returns with 0.6 of the rate.
+  const double a = 4 / kInertia, at_impact = std::sqrt(2 * a * 0.7), t_impact = at_impact / a, after = 0.1;
+  for (const std::string method : {"rk4", "semi_implicit_euler", "dormand_prince"}) {
+    std::vector<double> errors;
+    for (const int steps : {400, 800, 1600}) {
+      Run run(hinged_bar(limits), method);
+      test::run(*run.simulation, t_impact + after, steps);
+      errors.push_back(std::abs(run.sensor(1) - (-0.6 * at_impact + a * after)));
+      CHECK(std::abs(run.simulation->ledger().balance) < 0.02 * at_impact * at_impact * kInertia);
+    }
+    CAPTURE(method, errors);
+    CHECK(errors[2] < 0.02 * at_impact);
+  }
+}
+
+TEST_CASE("a limit stops a joint against a force, and a range may contain half a turn", "[actuation]") {
+  for (const std::string method : {"rk4", "semi_implicit_euler", "esdirk", "implicit_midpoint"}) {
+    CAPTURE(method);
+    Run run(hinged_bar(R"json("limits": [-0.5, 3.8], "drive": {"force": 1})json"), method);
+    test::run(*run.simulation, 4, 2000);
+    CHECK(run.sensor(0) == Approx(3.8 - 2 * kPi).margin(1e-6));
+    CHECK(std::abs(run.sensor(1)) < 1e-9);
+  }
+}
+
+TEST_CASE("limits bound the swing and the twist of a ball joint and the position of a slider",
+          "[actuation]") {
+  const std::string text = R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": 0.5}, "angular_velocity": [1, 2, -1]},
+              {"name": "cart", "shape": "box", "position": [3, 0, 0], "velocity": [1, 0, 0]}],
+    "joints": [{"type": "ball", "name": "neck", "from": {"part": "ball", "at": {"u": 0, "v": 0, "w": 0}},
+                "to": {"world": [0, 0, 0]}, "max_swing": 0.4, "twist_limits": [-0.2, 0.3], "restitution": 1},
+               {"type": "slider", "name": "rail", "from": {"part": "cart", "at": {"u": 0, "v": 0, "w": 0}},
+                "to": {"world": [3, 0, 0]}, "axis": [1, 0, 0], "limits": [-0.2, 0.3], "restitution": 1}],
+    "sensors": [{"name": "swing", "value": "sqrt(neck.swing_y^2 + neck.swing_z^2)"},
+                {"name": "twist", "value": "neck.twist"}, {"name": "x", "value": "rail.position"}]})json";
+  Run run(text, "rk4");
+  const double energy = run.simulation->ledger().energy();
+  double swing = 0, lowest = 0, highest = 0, left = 0, right = 0;
+  for (int i = 0; i < 3000; ++i) {
+    run.simulation->step(1e-3);
+    swing = std::max(swing, run.sensor(0));
+    lowest = std::min(lowest, run.sensor(1));
+    highest = std::max(highest, run.sensor(1));
+    left = std::min(left, run.sensor(2));
+    right = std::max(right, run.sensor(2));
+  }
+  // The swing is an angle between axes, the sensors are components of the rotation vector: the two agree for
+  // small angles.
+  CHECK(swing == Approx(0.4).margin(0.02));
+  CHECK(lowest == Approx(-0.2).margin(0.02));
+  CHECK(highest == Approx(0.3).margin(0.02));
+  CHECK(left == Approx(-0.2).margin(2e-3));
+  CHECK(right == Approx(0.3).margin(2e-3));
+  CHECK(run.simulation->ledger().energy() == Approx(energy).epsilon(1e-2));
+}
+
+TEST_CASE("a force that reads the state keeps the order of each method", "[actuation]") {
+  // A nonlinear oscillator with a coupled parameter: f = -40 sin(2 z) - 0.2 vz^3, and a radius that follows
+  // z.
+  const std::string text = R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "ball", "shape": "sphere", "mass": 3, "position": [0, 0, 0.5],
+               "parameters": {"r": {"rest": 0.4, "stiffness": 300,
+                                    "drive": {"target": "0.4 + 0.1 * ball.z", "stiffness": 200, "damping": 2}}}}],
+    "tracks": [{"name": "top", "part": "ball", "at": {"direction": [0, 0, 1]}}],
+    "forces": [{"part": "ball", "at": {"u": 0, "v": 0, "w": 0},
+                "force": ["-2 * top.vz", 0, "-40 * sin(2 * ball.z) - 0.2 * ball.vz^3"]}]})json";
+  auto state = [&](const std::string& method, int steps) {
+    Run run(text, method);
+    test::run(*run.simulation, 0.5, steps);
+    VecX<double> x(run.simulation->state().q.size() + run.simulation->state().v.size());
+    x << run.simulation->state().q, run.simulation->state().v;
+    return x;
+  };
+  const VecX<double> exact = state("dop853", 2000);
+  const std::vector<std::pair<std::string, double>> orders{
+      {"semi_implicit_euler", 1}, {"implicit_midpoint", 2}, {"rk4", 4}, {"dormand_prince", 5}, {"esdirk", 4}};
+  for (const auto& [method, order] : orders) {
+    std::vector<double> errors;
+    for (const int steps : {32, 64, 128}) errors.push_back((state(method, steps) - exact).norm());
+    CAPTURE(method, errors);
+    CHECK(test::observed_order(errors) > order - 0.3);
+  }
+}
+
+TEST_CASE("a muscle conserves momenta, and the ledger has its work", "[actuation]") {
+  Run run(R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "one", "shape": "sphere", "parameters": {"r": 0.2}, "angular_velocity": [1, 0, 2]},
+              {"name": "two", "shape": "box", "position": [1, 0.2, 0], "velocity": [0, 0.5, 0]}],
+    "springs": [{"name": "muscle", "from": {"part": "one", "at": {"direction": [1, 0, 0]}},
+                 "to": {"part": "two", "at": {"direction": [-1, 0, 0]}},
+                 "stiffness": "300 * (1 + 0.5 * sin(9 * t))", "damping": "2 + muscle.rate^2",
+                 "rest_length": "0.5 + 0.2 * sin(5 * t) - 0.1 * one.vx"}]})json",
+          "dormand_prince", 1e-10);
+  const Ledger start = run.simulation->ledger();
+  run.simulation->step(2);
+  const Ledger end = run.simulation->ledger();
+  CHECK((end.momentum - start.momentum).norm() < 1e-9);
+  CHECK((end.angular_momentum - start.angular_momentum).norm() < 1e-8);
+  CHECK(end.springs == 0);
+  CHECK(std::abs(end.work[static_cast<int>(Work::actuation)]) > 1);
+  CHECK(std::abs(end.balance) < 1e-7);
+}
+
+TEST_CASE("sensors may read sensors before them, and names with blanks are written in apostrophes",
+          "[actuation]") {
+  Run run(R"json({"gravity": [0, 0, 0],
+    "parts": [{"name": "left wing", "shape": "sphere", "position": [1, 2, 3], "velocity": [0, 0, 4]},
+              {"name": "frame", "shape": "box", "motion": {"position": ["5 * t", 0, 9]}}],
+    "sensors": [{"name": "height", "value": "'left wing'.z"}, {"name": "twice", "value": "2 * height + t"},
+                {"name": "speed", "value": "'left wing'.vz - frame.vx"}, {"name": "time", "value": "t^2"}]})json");
+  CHECK(run.sensor(0) == 3);
+  CHECK(run.sensor(1) == 6);
+  CHECK(run.sensor(2) == -1);
+  run.simulation->step(0.5);
+  CHECK(run.sensor(1) == Approx(2 * 5 + 0.5));
+  CHECK(run.sensor(3) == 0.25);
+}
+
+TEST_CASE("faulty names in formulas are reported with the names that exist", "[actuation]") {
+  auto with_force = [](const std::string& formula) {
+    return R"json({"parts": [{"name": "ball", "shape": "sphere"}],
+      "forces": [{"part": "ball", "at": {"u": 0, "v": 0, "w": 0}, "force": [")json" +
+           formula + R"json(", 0, 0]}]})json";
+  };
+  using test::has_text;
+  CHECK_THAT(error_of(with_force("bal.z")), has_text("no part, joint, spring, track or sensor \"bal\""));
+  CHECK_THAT(error_of(with_force("ball.height")), has_text("\"ball\" has no quantity \"height\""));
+  CHECK_THAT(error_of(with_force("ball.r")), has_text("\"ball\" has no quantity \"r\""));  // r is frozen
+  CHECK_THAT(error_of(with_force("2 * x")), has_text("unknown name \"x\""));
+  CHECK_THAT(error_of(with_force("ball.z +")), has_text("expected"));
+  CHECK_THAT(error_of(hinged_bar(R"json("limits": [1, -1])json")), has_text("lower < upper"));
+  CHECK_THAT(error_of(hinged_bar(R"json("limits": [-4, 4])json")), has_text("less than one turn"));
+  CHECK_THAT(error_of(hinged_bar("", R"json("sensors ": [])json")), has_text("sensors"));
+}
+
+TEST_CASE("loads that read the state connect parts, and other scenes have no coordinates",
+          "[actuation][skip]") {
+  Run run(
+      R"json({"parts": [{"name": "a", "shape": "sphere"}, {"name": "b", "shape": "sphere", "position": [9, 0, 0]},
+                            {"name": "c", "shape": "sphere", "position": [19, 0, 0]}],
+    "forces": [{"part": "a", "at": {"u": 0, "v": 0, "w": 0}, "force": ["b.x", 0, 0]}]})json");
+  const Model& model = run.simulation->model();
+  CHECK(model.load_connections() == std::vector<std::pair<int, int>>{{0, 1}});
+  CHECK(model.loaded_parts() == std::vector<int>{0, 1});
+  DisjointSets sets = model.connected_parts();
+  CHECK(sets.root(0) == sets.root(1));
+  CHECK(sets.root(0) != sets.root(2));
+  CHECK(model.coordinates().empty());
+}
+
+}  // namespace actuation_scenes_test
