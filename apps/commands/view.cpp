@@ -39,7 +39,8 @@ void show(const ViewCommand& command) {
   }
   const std::unique_ptr<pliant::Scene> scene = read(command.scene);
   options.scene_folder = file.parent_path();
-  options.saved = command.saved.empty() ? file.stem().string() + "-played.json" : command.saved;
+  const std::string stem = command.scene.file == "-" ? "scene" : file.stem().string();
+  options.saved = command.saved.empty() ? stem + "-played.json" : command.saved;
   pliant::view_scene(*scene, options, std::cout);
 }
 
