@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
+#include "failure.h"
 #include "open_run.h"
 #include "options.h"
 #include "scene_options.h"
@@ -23,7 +24,7 @@ struct ViewCommand {
   pliant::ViewOptions view;
 };
 
-int view(const ViewCommand& command) {
+void show(const ViewCommand& command) {
   pliant::ViewOptions options = command.view;
   if (!command.size.empty()) {
     const PictureSize size = parse_picture_size(command.size);
@@ -34,12 +35,21 @@ int view(const ViewCommand& command) {
   if (fs::is_directory(file)) {
     const OpenRun run = open_run(file);
     pliant::view_recording(*run.scene, *run.model, *run.recording, options, std::cout);
-    return kDone;
+    return;
   }
   const std::unique_ptr<pliant::Scene> scene = read(command.scene);
   options.scene_folder = file.parent_path();
-  options.saved = command.saved.empty() ? file.stem().string() + "-played.json" : command.saved;
+  const std::string stem = command.scene.file == "-" ? "scene" : file.stem().string();
+  options.saved = command.saved.empty() ? stem + "-played.json" : command.saved;
   pliant::view_scene(*scene, options, std::cout);
+}
+
+int view(const ViewCommand& command) {
+  try {
+    show(command);
+  } catch (const pliant::NoWindow& failure) {
+    throw ResourceFailure(failure.what());
+  }
   return kDone;
 }
 
@@ -76,7 +86,9 @@ void add_view(CLI::App& app, Action& action) {
       "Mouse: the left button drags a part by a spring, or turns the view beside the parts; the right "
       "button\n"
       "turns the view; the middle button, or Shift and the left one, moves it; the wheel zooms.\n"
-      "Keys: space plays and pauses, s makes one step, r resets, w saves, Escape closes.\n"
+      "Keys: space plays and pauses, s makes one step, r resets, w saves, Escape closes; c, f, j and m "
+      "switch\n"
+      "strain colours, forces, joints and springs, and meshes on and off.\n"
       "Examples:\n"
       "  pliant view scenes/snowman.json --play\n"
       "  pliant view out/pull");

@@ -227,7 +227,9 @@ void Pipeline::draw_tracks(const Picture& picture) {
     gl_.uniform_1f(track_program_.uniform("half_width"),
                    0.5f * static_cast<float>(sizes_.samples) * picture.tracks[i].width);
     tracks_.bind(range);
+    if (picture.tracks[i].on_top) gl_.disable(gl::kDepthTest);
     gl_.draw_arrays_instanced(gl::kTriangleStrip, 0, 4, range.segments);
+    gl_.enable(gl::kDepthTest);
   }
   gl_.depth_mask(1);
   gl_.disable(gl::kBlend);

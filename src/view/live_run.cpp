@@ -202,7 +202,7 @@ void LiveRun::publish() {
   if (next->dragging) {
     const Drag& drag = simulation_.drags().back();
     next->held = PlacedPoint(simulation_.simulation().model(), drag.spring->a).at(next->state);
-    next->target = drag.path.last();
+    next->target = drag.target;
   }
   if (failure_.empty()) {
     const Simulation& simulation = simulation_.simulation();

@@ -1,14 +1,12 @@
 // The viewer of a build without GLFW or Dear ImGui.
-#include <stdexcept>
-
 #include <pliant/view/viewer.h>
 
 namespace pliant {
 namespace {
 
 [[noreturn]] void fail() {
-  throw std::runtime_error("this build has no window; install " + missing_window_packages() +
-                           " (Debian names), configure again and build");
+  throw NoWindow("this build has no window; install " + missing_window_packages() +
+                 " (Debian names), configure again and build");
 }
 
 }  // namespace

@@ -59,10 +59,11 @@ void set_rest_values(Json& document, const LiveSimulation& simulation) {
 /// Makes the paths of mesh files relative to another folder.
 void move_meshes(Json& document, const std::filesystem::path& from, const std::filesystem::path& to) {
   if (!document.contains("contact") || !document["contact"].contains("obstacles")) return;
+  const std::filesystem::path folder = std::filesystem::absolute(to.empty() ? "." : to).lexically_normal();
   for (Json& obstacle : document["contact"]["obstacles"]) {
     if (!obstacle.contains("mesh")) continue;
     const std::filesystem::path file = std::filesystem::absolute(from / obstacle["mesh"].get<std::string>());
-    obstacle["mesh"] = file.lexically_relative(std::filesystem::absolute(to).lexically_normal()).string();
+    obstacle["mesh"] = file.lexically_normal().lexically_relative(folder).string();
   }
 }
 

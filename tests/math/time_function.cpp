@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/math/formula.h>
+#include <pliant/math/time/linear_keys.h>
 
 #include "catch.h"
 
@@ -55,6 +56,37 @@ TEST_CASE("clamped key frames reproduce cubic polynomials") {
       CHECK(std::abs(at.dd - ddf(x)) < 2e-11 * scale);
     }
   }
+}
+
+TEST_CASE("linear key frames are straight lines with a kink at every key") {
+  const std::vector<double> t{0, 0.5, 2, 3}, y{1, 3, 3, -1};
+  const TimeFunction lines = pliant::linear_key_frames(t, y);
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const double rate = (y[i + 1] - y[i]) / (t[i + 1] - t[i]);
+    CHECK(lines.at(t[i]).v == y[i]);
+    CHECK(lines.at(t[i]).d == rate);  // at a key the rate is that after the key
+    const auto middle = lines.at(0.5 * (t[i] + t[i + 1]));
+    CHECK(middle.v == Approx(0.5 * (y[i] + y[i + 1])));
+    CHECK(middle.d == rate);
+    CHECK(middle.dd == 0);
+    CHECK(lines.first_kink(t[i], 10).time == t[i + 1]);
+  }
+  CHECK(lines.value(-1) == 1);
+  CHECK(lines.value(5) == -1);
+  CHECK(lines.at(3).d == 0);
+  CHECK(lines.value(1.3) == 3);  // equal values are kept exactly
+  CHECK_FALSE(std::isfinite(lines.first_kink(3, 10).time));
+  CHECK_FALSE(lines.first_kink(-1, 10).jumps);
+  CHECK_THROWS_WITH(pliant::linear_key_frames({0, 0}, {1, 2}), pliant::test::has_text("times must increase"));
+  CHECK_THROWS_WITH(pliant::linear_key_frames({}, {}), pliant::test::has_text("no key"));
+
+  pliant::LinearKeys growing({0}, {1});
+  CHECK(growing.at(2).v == 1);
+  growing.append(1, 2);
+  CHECK(growing.at(0.5).v == 1.5);
+  CHECK(growing.at(0.5).d == 1);
+  growing.restart(0, 7);
+  CHECK(growing.at(0.5).v == 7);
 }
 
 TEST_CASE("key frames are interpolated, and the spline is twice continuously differentiable inside") {

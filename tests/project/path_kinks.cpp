@@ -210,4 +210,68 @@ TEST_CASE("impulses of rejected steps are not kept", "[joints]") {
   CHECK(fails.time() == Approx(0.48));
 }
 
+TEST_CASE("a spring acts between its times only, and the ledger counts its switching", "[springs]") {
+  struct Case {
+    const char* method;
+    double tolerance;
+  };
+  for (const auto& [method, tolerance] : {Case{"rk4", 0}, Case{"dop853", 1e-10}}) {
+    INFO(method);
+    MultiBody body, free;
+    for (MultiBody* each : {&body, &free}) {
+      each->gravity.setZero();
+      test::add(*each, "egg", "ellipsoid", {}, 100)
+          .rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}})
+          .velocity({0.5, 0, 0}, {0, 0.3, 1});
+    }
+    Spring& spring = body.spring("pull", point(*body.parts()[0], 0.3, 0.2), world(1, 1, 0), 300, 5, 0.2);
+    spring.on = 0.2;
+    spring.off = 0.6137;
+    Simulation simulation(body, method, 1, tolerance), without(free, method, 1, tolerance);
+    const auto run_to = [&](Simulation& each, double end) {
+      if (tolerance > 0)
+        while (each.time() < end) each.step_up_to(end);
+      else
+        test::run(each, end - each.time(), static_cast<int>(std::lround((end - each.time()) / 1e-3)));
+    };
+    run_to(simulation, 0.1);
+    run_to(without, 0.1);
+    CHECK(simulation.state().q == without.state().q);  // the choice of steps does not depend on the spring
+    CHECK(simulation.ledger().springs == 0);
+    run_to(simulation, 0.3);
+    const double pulled = simulation.ledger().springs;
+    CHECK(pulled > 0.5);
+    CHECK(simulation.ledger().work[kAnchors] > 0.5 * pulled);
+    CHECK(std::abs(simulation.ledger().balance) <= 1e-6 * simulation.ledger().work.cwiseAbs().sum());
+    run_to(simulation, 1);
+    const Ledger ledger = simulation.ledger();
+    CHECK(ledger.springs == 0);
+    CHECK(std::abs(ledger.balance) <= 1e-6 * ledger.work.cwiseAbs().sum());
+    CHECK(ledger.kinetic != Approx(without.ledger().kinetic).epsilon(1e-3));
+    // The speed does not change after the end of the spring.
+    const Vec3<double> speed = simulation.state().v.head<3>();
+    run_to(simulation, 1.2);
+    CHECK((simulation.state().v.head<3>() - speed).norm() <= 1e-9);
+  }
+}
+
+TEST_CASE("no step crosses a multiple of 1 / stop_rate", "[springs]") {
+  MultiBody body;
+  body.stop_rate = 7;
+  test::add(body, "egg", "ellipsoid", {}, 100).velocity({0.5, 0, 0}, {0, 0.3, 1});
+  Simulation simulation(body, "dop853", 1, 1e-8);
+  int stops = 0;
+  while (simulation.time() < 2) {
+    const double before = simulation.time();
+    simulation.step_up_to(2);
+    CHECK(std::floor(simulation.time() * 7 - 1e-9) == std::floor(before * 7 + 1e-9));
+    stops += std::abs(simulation.time() * 7 - std::round(simulation.time() * 7)) < 1e-12 ? 1 : 0;
+  }
+  CHECK(stops == 14);
+  const Model& model = simulation.model();
+  CHECK(model.next_kink(0, 10).time == 1. / 7);
+  CHECK(model.next_kink(1. / 7, 10).time == 2. / 7);
+  CHECK_FALSE(std::isfinite(model.next_kink(1. / 7, 0.28).time));
+}
+
 }  // namespace path_kinks_test

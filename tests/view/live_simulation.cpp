@@ -160,6 +160,24 @@ TEST_CASE("a dragged point moves as the library moves it with the same spring") 
   CHECK(worst <= 1e-6);
 }
 
+TEST_CASE("a dragged point follows the mouse in the next interval") {
+  const std::unique_ptr<Scene> scene = parse(kBar), other = parse(kBar);
+  LiveSimulation still(*scene), moved(*other);
+  for (LiveSimulation* live : {&still, &moved}) {
+    const Part& bar = *live->scene().body.find("bar");
+    const DragSpring spring = drag_spring(bar);
+    live->grab(point(bar, 0.3, 1.1), spring.stiffness, spring.damping);
+    for (int k = 0; k < 10; ++k) live->advance();
+  }
+  moved.drag_to(moved.drags()[0].path.last() + Vec3<double>(0.1, 0, 0));
+  still.advance();
+  moved.advance();
+  const auto held = [](const LiveSimulation& live) {
+    return PlacedPoint(live.simulation().model(), live.drags()[0].spring->a).at(live.simulation().state());
+  };
+  CHECK((held(moved) - held(still)).x() > 1e-3);
+}
+
 TEST_CASE("the ledger counts the work of a drag") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-9})"));
   LiveSimulation live(*scene);

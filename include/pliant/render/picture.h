@@ -31,12 +31,12 @@ struct Picture {
     double low = 0, high = 1;
   };
 
-  /// The path of a point in the world. Bodies in front of the path hide it. A path of one point is drawn as a
-  /// dot.
+  /// The path of a point in the world. A path of one point is drawn as a dot.
   struct Track {
     std::vector<Eigen::Vector3d> points;  ///< world, m
     Eigen::Vector3f color = {0.15f, 0.15f, 0.18f};
-    float width = 2;  ///< pixels
+    float width = 2;      ///< pixels
+    bool on_top = false;  ///< whether the path is visible behind bodies
   };
 
   /// A floor of constant height. It receives shadows and fades into the background far from the target of the

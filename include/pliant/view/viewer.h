@@ -3,12 +3,18 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <stdexcept>
 #include <string>
 
 #include <pliant/io/recording.h>
 #include <pliant/scene/scene.h>
 
 namespace pliant {
+
+/// Thrown if no window opens: this build has none, or there is no display. The message has the reason.
+class NoWindow : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct ViewOptions {
   int width = 960, height = 540;  ///< of the window, pixels
@@ -27,8 +33,8 @@ struct ViewOptions {
 std::string missing_window_packages();
 
 /// Simulates a scene in a window until the user closes it. out: for the results of scripts and benches.
-/// Throws std::runtime_error if no window opens, and what LiveSimulation, StatePicture and WindowRenderer
-/// throw.
+/// Throws NoWindow, std::invalid_argument for a script that cannot be read or has a faulty line, and what
+/// LiveSimulation, StatePicture and WindowRenderer throw.
 void view_scene(Scene& scene, const ViewOptions& options, std::ostream& out);
 
 /// Shows a recording in a window until the user closes it. Throws as view_scene() does.

@@ -76,6 +76,12 @@ void LiveMotion::show_again() {
   add_drag_line();
 }
 
+void LiveMotion::show_forces(const ShownForces& shown) {
+  forces_ = shown;
+  largest_force_ = 0;
+  run_.show_forces(shown);
+}
+
 void LiveMotion::add_drag_line() {
   if (!snapshot_->dragging) return;
   add_line({snapshot_->held, snapshot_->target}, kDragColor, kDragWidth);
@@ -88,6 +94,7 @@ void LiveMotion::add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vect
   track.points = std::move(points);
   track.color = color;
   track.width = width;
+  track.on_top = true;
   shown_.picture().tracks.push_back(std::move(track));
 }
 
@@ -126,6 +133,11 @@ void LiveMotion::color_by_strain(bool on) {
   // The rest values of the parts must not change meanwhile.
   run_.wait_for([&](LiveSimulation&) { shown_.color_again(); });
   show_again();
+}
+
+void LiveMotion::toggle_forces() {
+  const bool on = !(forces_.contacts || forces_.joints || forces_.loads);
+  show_forces({on, on, on});
 }
 
 std::optional<std::string> LiveMotion::grab(const Hit& hit) {
@@ -183,10 +195,7 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   changed = ImGui::Checkbox("joints", &forces_.joints) || changed;
   ImGui::SameLine();
   changed = ImGui::Checkbox("loads", &forces_.loads) || changed;
-  if (changed) {
-    largest_force_ = 0;
-    run_.show_forces(forces_);
-  }
+  if (changed) show_forces(forces_);
   ImGui::Separator();
   const Ledger& ledger = now.ledger;
   ImGui::Text("energy %.4g J", ledger.energy());

@@ -23,6 +23,7 @@ class LiveMotion final : public Motion {
   void reset() override;
   void show_again() override;
   void color_by_strain(bool on) override;
+  void toggle_forces() override;
   std::optional<std::string> grab(const Hit& hit) override;
   void drag_to(const Vec3<double>& position) override;
   void release() override;
@@ -32,6 +33,7 @@ class LiveMotion final : public Motion {
 
  private:
   void add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width);
+  void show_forces(const ShownForces& shown);
   void add_drag_line();
   void add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color);
   void add_rest_values(const std::string& part);

@@ -30,6 +30,8 @@ class Motion {
   virtual void reset() = 0;
   /// Colours the parts by their strain, or by their own colours.
   virtual void color_by_strain(bool on) = 0;
+  /// Shows all kinds of forces, or none.
+  virtual void toggle_forces() = 0;
 
   /// Begins to drag the point of a hit. Returns the name of its part, or nothing if it cannot be dragged.
   virtual std::optional<std::string> grab(const Hit& hit) = 0;

@@ -30,18 +30,13 @@ void Viewer::add_panel() {
   if (ImGui::Button("save")) message_ = motion_.save();
   motion_.add_to_panel(selected_);
   ImGui::Separator();
-  if (ImGui::Checkbox("strain colours", &by_strain_)) {
-    motion_.color_by_strain(by_strain_);
-    changed_ = true;
-  }
+  bool by_strain = by_strain_;
+  if (ImGui::Checkbox("strain colours", &by_strain)) color_by_strain(by_strain);
   StatePicture& shown = motion_.shown();
   ImGui::SameLine();
   bool changed = ImGui::Checkbox("meshes", &shown.picture().edges);
   changed = ImGui::Checkbox("joints and springs", &shown.shows_connectors) || changed;
-  if (changed) {
-    motion_.show_again();
-    changed_ = true;
-  }
+  if (changed) show_again();
   add_part_list();
   if (!message_.empty()) ImGui::TextWrapped("%s", message_.c_str());
   ImGui::End();

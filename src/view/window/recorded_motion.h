@@ -22,6 +22,7 @@ class RecordedMotion final : public Motion {
   void reset() override { show(first_); }
   void show_again() override { changed_ = true; }
   void color_by_strain(bool on) override;
+  void toggle_forces() override {}  // a recording has no contacts
   std::optional<std::string> grab(const Hit& hit) override;
   void drag_to(const Vec3<double>&) override {}
   void release() override {}

@@ -18,12 +18,12 @@ MouseButton button_of(const std::string& name) {
 
 Script::Script(const std::filesystem::path& file) : file_(file) {
   std::ifstream stream(file);
-  if (!stream) throw std::runtime_error("cannot read the script " + file.string());
+  if (!stream) throw std::invalid_argument("cannot read the script " + file.string());
   for (std::string line; std::getline(stream, line);) lines_.push_back(line);
 }
 
 void Script::fail(const std::string& reason) const {
-  throw std::runtime_error(file_.string() + ":" + std::to_string(next_) + ": " + reason);
+  throw std::invalid_argument(file_.string() + ":" + std::to_string(next_) + ": " + reason);
 }
 
 /// Moves the mouse over the middle of the mesh of a part.

@@ -13,11 +13,11 @@ namespace pliant {
 /// The README of include/pliant/view lists the lines.
 class Script {
  public:
-  /// Throws std::runtime_error if the file cannot be read.
+  /// Throws std::invalid_argument if the file cannot be read.
   explicit Script(const std::filesystem::path& file);
 
   /// Performs lines until one that waits for pictures. To be called before each picture. Returns false at the
-  /// end. out: for the lines that report. Throws std::runtime_error that names a line that is not known.
+  /// end. out: for the lines that report. Throws std::invalid_argument that names a line that is not known.
   bool perform(Viewer& viewer, std::ostream& out);
 
  private:

@@ -70,6 +70,23 @@ void Viewer::key_pressed(const std::string& key) {
   if (key == "s") motion_.step();
   if (key == "r") motion_.reset();
   if (key == "w") message_ = motion_.save();
+  if (key == "f") motion_.toggle_forces();
+  if (key == "c") color_by_strain(!by_strain_);
+  StatePicture& shown = motion_.shown();
+  if (key == "j") shown.shows_connectors = !shown.shows_connectors;
+  if (key == "m") shown.picture().edges = !shown.picture().edges;
+  if (key == "j" || key == "m") show_again();
+}
+
+void Viewer::color_by_strain(bool on) {
+  by_strain_ = on;
+  motion_.color_by_strain(on);
+  changed_ = true;
+}
+
+void Viewer::show_again() {
+  motion_.show_again();
+  changed_ = true;
 }
 
 bool Viewer::draw() {

@@ -26,7 +26,8 @@ class Viewer {
   void mouse_released(MouseButton button);
   /// Turns the wheel by a number of notches, positive away from the user.
   void wheel_turned(double notches);
-  /// key: "space" plays or pauses, "s" makes one step, "r" resets, "w" saves.
+  /// key: "space" plays or pauses, "s" makes one step, "r" resets, "w" saves; "c", "f", "j" and "m" switch
+  /// strain colours, forces, joints and springs, and meshes on and off.
   void key_pressed(const std::string& key);
   void resized(int width, int height);
 
@@ -46,6 +47,8 @@ class Viewer {
   enum class Action { none, orbit, pan, drag };
   Camera& camera() { return motion_.shown().picture().camera; }
   void begin_drag_or_orbit();
+  void color_by_strain(bool on);
+  void show_again();
   void add_color_bar();
   void add_part_list();
 

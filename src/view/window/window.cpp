@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <optional>
 #include <ostream>
-#include <stdexcept>
 #include <string>
 
 #define GLFW_INCLUDE_NONE
@@ -26,7 +25,7 @@ constexpr double kFrame = 1.0 / 60, kIdle = 0.1;  // s of wall time
 [[noreturn]] void fail(const std::string& what) {
   const char* reason = nullptr;
   glfwGetError(&reason);
-  throw std::runtime_error(what + (reason != nullptr ? std::string(": ") + reason : ""));
+  throw NoWindow(what + (reason != nullptr ? std::string(": ") + reason : ""));
 }
 
 /// GLFW, and a window with an OpenGL 3.3 core context that is current on this thread.
@@ -95,9 +94,8 @@ void connect(GLFWwindow* window, Viewer& viewer) {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
     if (action == GLFW_RELEASE || ImGui::GetIO().WantCaptureKeyboard) return;
     if (key == GLFW_KEY_SPACE) viewer_of(w).key_pressed("space");
-    if (key == GLFW_KEY_S) viewer_of(w).key_pressed("s");
-    if (key == GLFW_KEY_R) viewer_of(w).key_pressed("r");
-    if (key == GLFW_KEY_W) viewer_of(w).key_pressed("w");
+    if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
+      viewer_of(w).key_pressed(std::string(1, static_cast<char>('a' + key - GLFW_KEY_A)));
     if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(w, GLFW_TRUE);
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int wide, int high) {
