@@ -5,7 +5,7 @@
 #include <array>
 
 #include <pliant/body/stages/evaluation.h>
-#include <pliant/math/formula-inl.h>
+#include <pliant/math/formula_program.h>
 
 namespace pliant::detail {
 
