@@ -27,9 +27,9 @@ Record drive_of(std::string name, std::string what, Field target, Field rate, co
 
 }  // namespace
 
-Record drive_record(const std::string& unit, const std::string& force) {
+Record drive_record(std::string name, const std::string& unit, const std::string& force) {
   return drive_of(
-      "drive", "a coordinate x of a joint, or on a parameter x",
+      std::move(name), "a coordinate x of a joint, or on a parameter x",
       optional("target", state_function(unit, unbounded()), "Target of x.", "0"),
       optional("rate", state_function(unit + "/s", unbounded()),
                "Target of the rate of x; when absent, the rate of a target that is a function of t, "

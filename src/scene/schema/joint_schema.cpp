@@ -77,9 +77,9 @@ Type joint_type(const Type& end_point, const Type& orientation) {
     if (const int rows = coordinate_rows(info.name); rows > 0)
       record.fields.push_back(optional(
           "drive",
-          schema::record(rows == 3
-                             ? ball_drive_record()
-                             : (is_angle(info.name) ? drive_record("rad", "N m") : drive_record("m", "N"))),
+          schema::record(rows == 3 ? ball_drive_record()
+                                   : (is_angle(info.name) ? drive_record("angle_drive", "rad", "N m")
+                                                          : drive_record("position_drive", "m", "N"))),
           "Spring, servo or motor on the coordinate of the joint."));
     add_limits(info.name, orientation, record);
     record.fields.push_back(
