@@ -163,12 +163,15 @@ void LiveMotion::release() {
 
 std::string LiveMotion::save() {
   std::string text;
+  bool exact = true;
   run_.wait_for([&](LiveSimulation& simulation) {
     text = saved_scene(simulation, options_.scene_folder, options_.saved.parent_path());
+    exact = repeats_exactly(simulation);
   });
   std::ofstream file(options_.saved);
   if (!(file << text).flush()) return "cannot write " + options_.saved.string();
-  return "saved in " + options_.saved.string();
+  return "saved in " + options_.saved.string() +
+         (exact ? "" : "; it repeats the motion up to rounding, because gravity was changed");
 }
 
 void LiveMotion::add_to_panel(const std::string& selected) {
