@@ -46,7 +46,7 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
       first_gravity_(scene.body.gravity_at(0)) {
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
   run_.wait_for([&](LiveSimulation& simulation) { rest_values_ = simulation.rest_values(); });
-  shown_.set(snapshot_->state);
+  show_again();
   const State& state = snapshot_->state;
   Eigen::AlignedBox3d bodies = shown_.bounds(state), all = bodies;
   shown_.extend_to_anchors(state.time(), bodies, all);
