@@ -252,7 +252,7 @@ void Pipeline::draw_samples(const Picture& picture) {
   gl_.enable(gl::kDepthClamp);
   draw_depth(shadow_, sizes_.shadow_side, shadow_program_, picture.lights.shadows);
   gl_.disable(gl::kDepthClamp);
-  if (picture.ground.shown) draw_contact(picture.lights.shadows);
+  if (picture.ground.shown) draw_contact(picture.lights.shadows && sizes_.occlusion);
 
   gl_.active_texture(gl::kTexture0 + kShadowUnit);
   gl_.bind_texture(gl::kTexture2d, shadow_.texture.name());

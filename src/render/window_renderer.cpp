@@ -15,7 +15,8 @@ PassSizes sizes_of(int width, int height, WindowRenderer::Quality quality) {
   if (quality == WindowRenderer::Quality::draft) {
     sizes.samples = 1;
     sizes.shadow_side = 1024;
-    sizes.contact_side = 64;
+    sizes.contact_side = 32;
+    sizes.occlusion = false;
   }
   return sizes;
 }

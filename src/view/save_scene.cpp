@@ -1,5 +1,6 @@
 #include <pliant/view/save_scene.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -68,6 +69,13 @@ void move_meshes(Json& document, const std::filesystem::path& from, const std::f
 }
 
 }  // namespace
+
+bool repeats_exactly(const LiveSimulation& simulation) {
+  const Model& model = simulation.simulation().model();
+  const auto is_rigid = [&](const Island& island) { return RigidIsland::applies_to(model, island); };
+  return simulation.gravity() == nullptr ||
+         std::none_of(model.islands().begin(), model.islands().end(), is_rigid);
+}
 
 std::string saved_scene(const LiveSimulation& simulation, const std::filesystem::path& scene_folder,
                         const std::filesystem::path& folder) {

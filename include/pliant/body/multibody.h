@@ -107,7 +107,7 @@ class MultiBody {
   /// std::invalid_argument if one of these is a constant that is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, StateFunction stiffness, StateFunction damping = 0,
                  StateFunction rest_length = 0);
-  /// Removes a spring of this MultiBody. No Model of this MultiBody may exist.
+  /// Removes a spring of this MultiBody. No Model that was made after the spring may exist.
   void remove(const Spring& spring);
   /// Adds a force (N) at a material point. frame: the frame of its components.
   PointForce& force(std::string name, Point at, StateVector force, Frame frame = Frame::world);

@@ -14,8 +14,9 @@ namespace pliant {
 class WindowRenderer {
  public:
   enum class Quality {
-    draft,  ///< one sample for each pixel and a coarse shadow map, for pictures that change
-    full    ///< the quality of Renderer
+    /// One sample for each pixel, a coarse shadow map and no occlusion of the sky, for pictures that change.
+    draft,
+    full  ///< the quality of Renderer
   };
 
   /// loader: finds the GL entry points of the context. Throws std::runtime_error if the context is not OpenGL

@@ -32,11 +32,13 @@ vec3 background(float y) {
 }
 
 // Returns the unshadowed share of the key light, from a 4x4 grid of filtered comparisons. Each of the 2x2 samples of a
-// pixel evaluates four of them, so that the mean of the samples covers the whole grid.
+// pixel evaluates four of them, so that the mean of the samples covers the whole grid. A picture with one sample for
+// each pixel has one filtered comparison.
 float key_light(sampler2DShadow map, vec3 place, vec2 sample_place) {
+  float z = clamp(place.z, 0.0, 1.0);
+  if (viewport.w < 1.0) return texture(map, vec3(place.xy, z));
   float step = 2.0 * viewport.z;
   vec2 corner = place.xy + (mod(floor(sample_place), 2.0) - 1.5) * step;
-  float z = clamp(place.z, 0.0, 1.0);
   return 0.25 * (texture(map, vec3(corner, z)) + texture(map, vec3(corner + vec2(2.0 * step, 0.0), z)) +
                  texture(map, vec3(corner + vec2(0.0, 2.0 * step), z)) +
                  texture(map, vec3(corner + vec2(2.0 * step), z)));

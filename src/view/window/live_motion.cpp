@@ -46,7 +46,7 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
       first_gravity_(scene.body.gravity_at(0)) {
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
   run_.wait_for([&](LiveSimulation& simulation) { rest_values_ = simulation.rest_values(); });
-  shown_.set(snapshot_->state);
+  show_again();
   const State& state = snapshot_->state;
   Eigen::AlignedBox3d bodies = shown_.bounds(state), all = bodies;
   shown_.extend_to_anchors(state.time(), bodies, all);
@@ -163,12 +163,15 @@ void LiveMotion::release() {
 
 std::string LiveMotion::save() {
   std::string text;
+  bool exact = true;
   run_.wait_for([&](LiveSimulation& simulation) {
     text = saved_scene(simulation, options_.scene_folder, options_.saved.parent_path());
+    exact = repeats_exactly(simulation);
   });
   std::ofstream file(options_.saved);
   if (!(file << text).flush()) return "cannot write " + options_.saved.string();
-  return "saved in " + options_.saved.string();
+  return "saved in " + options_.saved.string() +
+         (exact ? "" : "; it repeats the motion up to rounding, because gravity was changed");
 }
 
 void LiveMotion::add_to_panel(const std::string& selected) {
