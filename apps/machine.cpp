@@ -68,6 +68,7 @@ std::string version_text() {
 #else
       "SuiteSparse is not linked.\n"
 #endif
+      "window: GLFW has the zlib licence, Dear ImGui MIT (pliant doctor reports whether they are linked).\n"
       "graphics: OSMesa or EGL, opened only when a picture is requested (pliant doctor lists the available "
       "ones).\n";
   return text;

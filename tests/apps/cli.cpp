@@ -55,7 +55,7 @@ int exit_code_of(pid_t child) {
 TEST_CASE("help and version are printed, and a run writes its files") {
   const TestFolder place;
   for (const char* command :
-       {"", "run ", "check ", "info ", "list ", "render ", "export ", "schema ", "doctor "}) {
+       {"", "run ", "check ", "info ", "list ", "view ", "render ", "export ", "schema ", "doctor "}) {
     const Result help = place.pliant(std::string(command) + "--help");
     CHECK(help.code == 0);
     CHECK(has(help.out, "pliant"));
