@@ -98,8 +98,7 @@ void Model::add_sensors() {
 void Model::add_drives() {
   for (const auto& drive : body_->drives()) {
     const Signal& on = drive->on;
-    if (on.coordinate != nullptr ? place_of(coordinates_, on.coordinate) < 0 : number_of(*on.part) < 0)
-      continue;
+    if (on.coordinate != nullptr ? place_of(coordinates_, on.coordinate) < 0 : !moves(on.part)) continue;
     const std::string what = "drive '" + drive->name + "'";
     DriveModel m{drive.get(), resolve(on, what), resolve(drive->target, what), {}, {}, {}, {}};
     if (drive->target_rate) m.target_rate = resolve(*drive->target_rate, what);

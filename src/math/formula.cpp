@@ -1,4 +1,4 @@
-// Parser of formulas (recursive descent). The evaluation is in formula-inl.h.
+// Parser of formulas (recursive descent). The evaluation is in formula_program.h.
 #include <pliant/math/formula-inl.h>
 
 #include <array>

@@ -124,7 +124,7 @@ Type time_vector(std::string unit) {
 
 Type state_function(std::string unit, Range range) {
   const std::string words =
-      "a number" + in(unit) +
+      number(range, unit).words() +
       ", a formula of t and of named quantities in quotes, or key frames {\"t\": [...], "
       "\"y\": [...]}";
   return one_of({number(range, std::move(unit)), state_formula(), key_frames()}).expecting(words);

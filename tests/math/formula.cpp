@@ -1,5 +1,5 @@
 // Formulas: values, exact derivatives, precedence, and every error with its position.
-#include <pliant/math/formula_program.h>
+#include <pliant/math/scalar/formula_program.h>
 
 #include <cmath>
 #include <functional>

@@ -41,7 +41,7 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Wo
 
 PLIANT_INLINE void Dynamics::add_energy(const DriveModel& m, const Evaluation<double>& e,
                                         Ledger& ledger) const {
-  if (!m.drive->is_passive()) return;
+  if (!detail::stores_energy(*model_, m)) return;
   double error = m.drive->target.constant() - detail::signal_value(e, m.on);
   if (m.drive->angle) error -= 2 * kPi * std::round(error / (2 * kPi));
   ledger.springs += 0.5 * m.drive->stiffness.constant() * error * error;

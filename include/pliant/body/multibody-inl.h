@@ -97,7 +97,7 @@ PLIANT_INLINE Drive& MultiBody::drive(std::string name, const Joint& coordinate,
   drive->on.kind = Signal::Kind::coordinate;
   drive->on.coordinate = &coordinate;
   drive->on.index = row;
-  drive->angle = coordinate.type() != std::string(SliderPosition::name);
+  drive->angle = row == 0 && coordinate.type() != std::string(SliderPosition::name);  // not a swing
   drives_.push_back(std::move(drive));
   return *drives_.back();
 }

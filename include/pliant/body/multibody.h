@@ -117,10 +117,10 @@ class MultiBody {
   /// Adds a torque (N m) on a part. frame: the frame of its components.
   Torque& torque(std::string name, const Part& part, StateVector torque, Frame frame = Frame::world);
 
-  /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (rotation vector,
-  /// rad: twist and two components of the swing), for signals and drives. It is zero at time 0 with
-  /// undeformed parts, except for the position of a slider, for a hinge with from_axis and for a ball joint
-  /// with BallAxes::rotation. Later calls for the same joint return its first coordinate. Throws
+  /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (twist and two
+  /// components of the swing, rad), for signals and drives. It is zero at time 0 with undeformed parts,
+  /// except for the position of a slider, for a hinge with from_axis and for a ball joint with
+  /// BallAxes::rotation. Later calls for the same joint return its first coordinate. Throws
   /// std::invalid_argument for joints of other types.
   const Joint& coordinate(const Joint& joint, const BallAxes& ball = {});
   /// Limits the angle of a hinge (rad) or the position of a slider (m) to [lower, upper], with a restitution

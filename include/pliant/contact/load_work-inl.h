@@ -16,8 +16,8 @@ namespace pliant {
 
 namespace load_work {
 
-inline bool has_actuation(const DriveModel& m) {
-  return !m.drive->is_passive();
+inline bool has_actuation(const Model& model, const DriveModel& m) {
+  return !detail::stores_energy(model, m);
 }
 inline bool has_actuation(const SpringModel& m) {
   return !m.functions.empty();
@@ -44,7 +44,7 @@ PLIANT_INLINE LoadWork::LoadWork(const Dynamics& dynamics, const State& from) : 
       read(s.functions);
     }
   for (const DriveModel& m : model.drives())
-    if (load_work::has_actuation(m)) {
+    if (load_work::has_actuation(model, m)) {
       model.append_parts(m.on, loaded_);
       read({m.target, m.target_rate, m.stiffness, m.damping, m.force});
     }
@@ -83,7 +83,7 @@ PLIANT_INLINE LoadWork::Places LoadWork::places(const Evaluation<double>& e) con
       places.springs.push_back(detail::motion_of(e, s.b, s.spring->b).x -
                                detail::motion_of(e, s.a, s.spring->a).x);
   for (const DriveModel& m : model.drives())
-    if (load_work::has_actuation(m)) places.drives.push_back(detail::signal_value(e, m.on));
+    if (load_work::has_actuation(model, m)) places.drives.push_back(detail::signal_value(e, m.on));
   return places;
 }
 
@@ -121,13 +121,14 @@ PLIANT_INLINE double LoadWork::work_until(double t, const State& to) {
     work -= detail::force_of(e, s, a, b).elastic.dot(change);
   }
   for (const DriveModel& m : model.drives()) {
-    if (!load_work::has_actuation(m)) continue;
-    const detail::DriveForce<double> f =
-        detail::force_of(e, m, after.drives[drive], detail::signal_rate(e, m.on));
-    double change = after.drives[drive] - before_.drives[drive];
+    if (!load_work::has_actuation(model, m)) continue;
+    const double x = after.drives[drive];
+    double change = x - before_.drives[drive];
+    ++drive;
+    if (!detail::acts_at(model, m, t)) continue;
+    const detail::DriveForce<double> f = detail::force_of(e, m, x, detail::signal_rate(e, m.on));
     if (m.drive->angle) change -= 2 * kPi * std::round(change / (2 * kPi));
     work += (f.elastic + f.damping) * change;
-    ++drive;
   }
   return work;
 }

@@ -98,6 +98,32 @@ PLIANT_INLINE Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& rest
   find_switches();
 }
 
+/// Finds the muscles, and the drives of joints and parameters, that change.
+PLIANT_INLINE void Sleeping::find_actuation() {
+  auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
+  for (const SpringModel& s : model_.springs())
+    for (const int end : {s.a.part, s.b.part})
+      if (has(end) && !s.functions.empty())
+        drives_.push_back({end, [spring = s.spring](double t, double h) {
+                             return sleeping::differs(spring->stiffness, t, h) ||
+                                    sleeping::differs(spring->damping, t, h) ||
+                                    sleeping::differs(spring->rest_length, t, h);
+                           }});
+  for (const DriveModel& m : model_.drives()) {
+    std::vector<int> parts;
+    model_.append_parts(m.on, parts);
+    for (const int part : parts)
+      if (has(part) && !m.drive->is_passive())
+        drives_.push_back({part, [drive = m.drive](double t, double h) {
+                             return sleeping::differs(drive->target, t, h) ||
+                                    (drive->target_rate && sleeping::differs(*drive->target_rate, t, h)) ||
+                                    sleeping::differs(drive->stiffness, t, h) ||
+                                    sleeping::differs(drive->damping, t, h) ||
+                                    sleeping::differs(drive->force, t, h);
+                           }});
+  }
+}
+
 /// Finds the drives that change: rest values, forces, torques, springs, drives of joints and parameters,
 /// prescribed motions at springs and joints, and gravity.
 PLIANT_INLINE void Sleeping::find_drives() {
@@ -129,27 +155,7 @@ PLIANT_INLINE void Sleeping::find_drives() {
         drives_.push_back({end, [spring = s.spring, far = other](double t, double h) {
                              return sleeping::pulls(*spring, *far, t, h);
                            }});
-  for (const SpringModel& s : model_.springs())
-    for (const int end : {s.a.part, s.b.part})
-      if (has(end) && !s.functions.empty())
-        drives_.push_back({end, [spring = s.spring](double t, double h) {
-                             return sleeping::differs(spring->stiffness, t, h) ||
-                                    sleeping::differs(spring->damping, t, h) ||
-                                    sleeping::differs(spring->rest_length, t, h);
-                           }});
-  for (const DriveModel& m : model_.drives()) {
-    std::vector<int> parts;
-    model_.append_parts(m.on, parts);
-    for (const int part : parts)
-      if (has(part) && !m.drive->is_passive())
-        drives_.push_back({part, [drive = m.drive](double t, double h) {
-                             return sleeping::differs(drive->target, t, h) ||
-                                    (drive->target_rate && sleeping::differs(*drive->target_rate, t, h)) ||
-                                    sleeping::differs(drive->stiffness, t, h) ||
-                                    sleeping::differs(drive->damping, t, h) ||
-                                    sleeping::differs(drive->force, t, h);
-                           }});
-  }
+  find_actuation();
   for (const int j : model_.driven_joints()) {
     const JointModel& joint = model_.joints()[at(j)];
     drives_.push_back({joint.sides.front().part, [&joint](double t, double h) {

@@ -47,6 +47,7 @@ class Sleeping {
   };
 
   void find_drives();
+  void find_actuation();
   void find_switches();
   double speed(const State& state, int part) const;
   bool update_rest_times(double h, State& state) const;

@@ -1,7 +1,7 @@
 // Function bodies of formula.h for formulas of time.
 #pragma once
 
-#include <pliant/math/formula_program.h>
+#include <pliant/math/scalar/formula_program.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {

@@ -67,7 +67,7 @@ class Formula {
 
   /// Returns the value for values of t (s) and of the named quantities, in the order of their numbers. T is
   /// double, Dual<1> or Taylor2<double>. At a kink of abs, min, max or step, derivatives are those of one
-  /// branch. Defined in formula_program.h.
+  /// branch. Defined in scalar/formula_program.h.
   template <class T>
   T value(const T& time, const T* variables) const;
   /// Returns whether the formula contains named quantities.

@@ -87,13 +87,15 @@ LimitRange range_of(const Joint& coordinate, double lower, double upper, double 
   const std::string what = "limits of joint '" + coordinate.name() + "': ";
   if (!(lower < upper) || !(upper - lower < longest))
     throw std::invalid_argument(what + "expected a range with lower < upper" +
-                                (std::isfinite(longest) ? " and less than one turn" : ""));
+                                (std::isfinite(longest) ? ", less than one turn minus 0.1 rad" : ""));
   if (!(restitution >= 0 && restitution <= 1))
     throw std::invalid_argument(what + "expected a restitution from 0 to 1");
   return {(lower + upper) / 2, (upper - lower) / 2, 1, smallest_size(coordinate), restitution};
 }
 
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
+/// Longest range of an angle, rad. A step must not turn a joint across the rest of the turn.
+constexpr double kLongestTurn = 2 * kPi - 0.1;
 
 }  // namespace
 
@@ -101,7 +103,7 @@ std::vector<std::unique_ptr<Joint>> make_limits(const Joint& coordinate, double 
                                                 double restitution) {
   if (coordinate.type() == std::string(HingeAngle::name))
     return limits_of<HingeAngle, HingeLimit>(
-        coordinate, range_of(coordinate, lower, upper, 2 * kPi, restitution), {kLower, kUpper});
+        coordinate, range_of(coordinate, lower, upper, kLongestTurn, restitution), {kLower, kUpper});
   if (coordinate.type() == std::string(SliderPosition::name))
     return limits_of<SliderPosition, SliderLimit>(
         coordinate, range_of(coordinate, lower, upper, kAnyLength, restitution), {kLower, kUpper});
@@ -112,7 +114,7 @@ std::vector<std::unique_ptr<Joint>> make_limits(const Joint& coordinate, double 
 std::vector<std::unique_ptr<Joint>> make_swing_limit(const Joint& coordinate, double max,
                                                      double restitution) {
   auto limits = limits_of<BallRotation, SwingLimit>(
-      coordinate, range_of(coordinate, -max, max, 2 * kPi, restitution), {kSwing});
+      coordinate, range_of(coordinate, -max, max, kLongestTurn, restitution), {kSwing});
   if (limits.empty()) throw std::invalid_argument("joint '" + coordinate.name() + "' has no swing");
   return limits;
 }
@@ -120,15 +122,20 @@ std::vector<std::unique_ptr<Joint>> make_swing_limit(const Joint& coordinate, do
 std::vector<std::unique_ptr<Joint>> make_twist_limits(const Joint& coordinate, double lower, double upper,
                                                       double restitution) {
   auto limits = limits_of<BallRotation, TwistLimit>(
-      coordinate, range_of(coordinate, lower, upper, 2 * kPi, restitution), {kLower, kUpper});
+      coordinate, range_of(coordinate, lower, upper, kLongestTurn, restitution), {kLower, kUpper});
   if (limits.empty()) throw std::invalid_argument("joint '" + coordinate.name() + "' has no twist");
   return limits;
 }
 
 std::unique_ptr<Joint> make_coordinate(const Joint& joint, const BallAxes& ball) {
-  if (auto angle = coordinate_at_points<Hinge, HingeAngle>(joint)) return angle;
-  if (auto position = coordinate_at_points<Slider, SliderPosition>(joint)) return position;
-  if (dynamic_cast<const JointOf<Ball>*>(&joint) != nullptr) return ball_rotation(joint, ball);
+  std::unique_ptr<Joint> coordinate = coordinate_at_points<Hinge, HingeAngle>(joint);
+  if (!coordinate) coordinate = coordinate_at_points<Slider, SliderPosition>(joint);
+  if (!coordinate && dynamic_cast<const JointOf<Ball>*>(&joint) != nullptr)
+    coordinate = ball_rotation(joint, ball);
+  if (coordinate) {
+    coordinate->during(joint.on(), joint.off());
+    return coordinate;
+  }
   throw std::invalid_argument(std::string(joint.type()) + " '" + joint.name() +
                               "' has no coordinate; a hinge, a slider and a ball joint have one");
 }

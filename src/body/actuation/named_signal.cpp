@@ -1,7 +1,9 @@
 #include <pliant/body/actuation/named_signal.h>
 
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/multibody.h>
@@ -163,14 +165,17 @@ std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, co
 
 StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points) {
   std::vector<Signal> signals;
+  std::map<std::pair<std::string, std::string>, int> numbers;  // of the names read so far
   Formula formula(text, [&](const std::string& owner, const std::string& quantity) {
+    const auto [known, is_new] = numbers.try_emplace({owner, quantity}, static_cast<int>(signals.size()));
+    if (!is_new) return known->second;
     const std::optional<Signal> signal = named_signal(body, owner, quantity, points);
     if (!signal && quantity.empty()) return -1;
     if (!signal)
       throw std::invalid_argument("there is no part, joint, spring, track, sensor or input \"" + owner +
                                   "\"");
     signals.push_back(*signal);
-    return static_cast<int>(signals.size()) - 1;
+    return known->second;
   });
   if (!formula.has_variables()) return TimeFunction::formula(text);
   return {std::move(formula), std::move(signals)};

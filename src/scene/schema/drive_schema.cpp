@@ -39,7 +39,7 @@ Record drive_record(std::string name, const std::string& unit, const std::string
 
 Record ball_drive_record() {
   return drive_of("ball_drive", "the rotation of a ball joint (twist, swing_y, swing_z)",
-                  optional("target", state_vector("rad"), "Target of the rotation vector.", "[0, 0, 0]"),
+                  optional("target", state_vector("rad"), "Target of twist and swing.", "[0, 0, 0]"),
                   optional("rate", state_vector("rad/s"),
                            "Target of its rate; when absent, the rate of a target that is a function of t, "
                            "otherwise 0."),

@@ -3,11 +3,14 @@
 //   hinge   C = size (half - sign (x - middle)),   x: the angle
 //   slider  C = half - sign (x - middle),          x: the position
 //   ball    C = size (max^2 - theta^2) / (2 max),  theta: the angle between the axes a_1 and b_1 (swing)
-//   ball    C = size (half - sign (x - middle)),   x: the twist, 2 atan2(Q_32 - Q_23, 1 + tr Q), Q = b^T a
+//   ball    C = size (half - sign (x - middle)),   x: the twist (ball_rotation.h)
 // The range of x is [middle - half, middle + half]; sign is 1 for its upper and -1 for its lower end. x -
 // middle is in (-pi, pi], so a range of angles has at most one turn.
 #pragma once
 
+#include <cmath>
+
+#include <pliant/body/actuation/ball_rotation.h>
 #include <pliant/body/actuation/hinge_angle.h>
 #include <pliant/body/joints/hinge.h>
 #include <pliant/body/material_frame.h>
@@ -75,10 +78,9 @@ struct TwistLimit : LimitRange {
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
-    const Mat3<T> Q = b.axes.transpose() * a.axes;
-    const T cosine = Q(0, 0) + Q(1, 1) + Q(2, 2) + T(1.0), sine = Q(2, 1) - Q(1, 2);
-    const double c = std::cos(middle / 2), s = std::sin(middle / 2);
-    const T x = angle_of(T(cosine * c + sine * s), T(sine * c - cosine * s)) * T(2.0);
+    const Vec<T, 2> twist = twist_direction(a, b);
+    const double c = std::cos(middle), s = std::sin(middle);
+    const T x = angle_of(T(twist[0] * c + twist[1] * s), T(twist[1] * c - twist[0] * s));
     return Vec<T, rows>(T((T(half) - x * sign) * size));
   }
 };

@@ -8,9 +8,11 @@
 
 namespace pliant {
 
-/// Returns the angle in (-pi, pi] of the direction (c, s), which need not be of length 1.
+/// Returns the angle in (-pi, pi] of the direction (c, s), which need not be of length 1; 0 for a vector
+/// shorter than 1e-12, which has no direction.
 template <class T>
 T angle_of(const T& c, const T& s) {
+  if (!(plain(c) * plain(c) + plain(s) * plain(s) >= 1e-24)) return T(0.0);
   const T length = math::sqrt(T(c * c + s * s)), cosine = c / length, sine = s / length;
   const T sine2 = sine * sine;
   if (plain(cosine) >= 0) return sine * angle_over_sine(cosine, sine2);

@@ -132,6 +132,7 @@ class LoadStage {
   }
 
   void add(const DriveModel& m) {
+    if (!acts(e_, m)) return;
     const S x = signal_value(e_, m.on), x_dot = signal_rate(e_, m.on);
     const DriveForce<S> f = force_of(e_, m, x, x_dot);
     const S force = f.elastic + f.damping;
@@ -139,7 +140,7 @@ class LoadStage {
       push_coordinate(m.on, force);
     else if (e_.part(m.on.part).q0 >= 0)
       e_.part_work(m.on.part).f[6 + m.on.signal->index] += force;
-    if (m.drive->is_passive()) {
+    if (stores_energy(model_, m)) {
       power(Work::spring_damping) += f.damping * x_dot;
       return;
     }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include <pliant/body/stages/evaluation.h>
-#include <pliant/math/formula_program.h>
+#include <pliant/math/scalar/formula_program.h>
 
 namespace pliant::detail {
 
@@ -50,13 +52,43 @@ const JointRows<S>& coordinate_rows(const Evaluation<S>& e, int place) {
 template <class S>
 S value_of(const Evaluation<S>& e, const FunctionModel& f);
 
+/// Returns whether a drive acts at time t (s): a drive of a joint acts while the joint does.
+inline bool acts_at(const Model& model, const DriveModel& m, double t) {
+  return m.on.place < 0 || model.coordinates()[static_cast<std::size_t>(m.on.place)].coordinate->acts_at(t);
+}
+/// Returns whether a drive acts in an evaluation. The mode of its joint decides, which is constant in a step.
+template <class S>
+bool acts(const Evaluation<S>& e, const DriveModel& m) {
+  if (m.on.place < 0) return true;
+  const Joint& coordinate = *e.model().coordinates()[static_cast<std::size_t>(m.on.place)].coordinate;
+  if (std::isinf(coordinate.on()) && std::isinf(coordinate.off())) return true;
+  const std::vector<JointMode>* modes = nullptr;
+  if (e.modes != nullptr) modes = &e.modes->joints;
+  if (e.fixed_modes != nullptr) modes = &e.fixed_modes->joints.modes;
+  if (modes == nullptr) return coordinate.acts_at(e.t);
+  const std::vector<JointModel>& joints = e.model().joints();
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].joint->name() == coordinate.name()) return (*modes)[j] != JointMode::off;
+  return false;
+}
+
+/// Returns whether the ledger has the energy of a drive: a spring and damper that acts at all times.
+inline bool stores_energy(const Model& model, const DriveModel& m) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return m.drive->is_passive() && acts_at(model, m, -infinity) &&
+         (m.on.place < 0 ||
+          model.coordinates()[static_cast<std::size_t>(m.on.place)].coordinate->off() == infinity);
+}
+
 /// Returns the distance of the two points of a signal, m, and its rate.
 template <class S>
 std::array<S, 2> distance_of(const Evaluation<S>& e, const SignalModel& m) {
   const PortMotion<S> a = motion_of(e, m.a, m.signal->a), b = motion_of(e, m.b, m.signal->b);
   const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
-  const S length = math::sqrt(S(d.dot(d)));
-  return {length, plain(length) == 0 ? S(0.0) : S(d.dot(d_dot)) / length};
+  const S length2 = d.dot(d);
+  if (plain(length2) == 0) return {S(0.0), S(0.0)};  // no direction
+  const S length = math::sqrt(length2);
+  return {length, S(d.dot(d_dot)) / length};
 }
 
 /// Returns the velocity (m/s, world) and the angular velocity (rad/s, body frame) of the frame of a part.
