@@ -1,8 +1,8 @@
 // Function bodies of formula.h for formulas of time.
 #pragma once
 
-#include <pliant/math/scalar/formula_program.h>
 #include <pliant/math/header_only.h>
+#include <pliant/math/scalar/formula_program.h>
 
 namespace pliant {
 
