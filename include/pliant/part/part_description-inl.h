@@ -400,7 +400,8 @@ PLIANT_INLINE std::optional<ConstantsKey> PartDescription::constants_key() const
   if (local_settings_) return std::nullopt;
   ConstantsKey key;
   detail::KeyWriter writer(key);
-  writer.add(&typeid(part()));  // the type fixes the shape, and the chain unless it is composed at run time
+  const auto& self = part();
+  writer.add(&typeid(self));  // the type fixes the shape, and the chain unless it is composed at run time
   writer.add_count(parameters_.all_links().size());
   for (const LinkInfo& link : parameters_.all_links()) {
     writer.add(link.parameters);

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-using Kind = Signal::Kind;
+using SignalKind = Signal::Kind;
 
 /// Returns the component of a name "x", "y" or "z" after a prefix; -1 if the name is another one.
 int component(const std::string& name, const std::string& prefix) {
@@ -22,7 +22,7 @@ int component(const std::string& name, const std::string& prefix) {
 }
 
 /// Returns the signal of a position or velocity, "x" ... "vz", or nothing for another name.
-std::optional<Signal> place_signal(const std::string& quantity, Kind place, Kind rate) {
+std::optional<Signal> place_signal(const std::string& quantity, SignalKind place, SignalKind rate) {
   Signal signal;
   if (const int i = component(quantity, ""); i >= 0) {
     signal.kind = place;
@@ -40,7 +40,7 @@ std::optional<Signal> place_signal(const std::string& quantity, Kind place, Kind
 std::optional<Signal> length_signal(const std::string& quantity, const Point& a, const Point& b) {
   if (quantity != "length" && quantity != "rate") return {};
   Signal signal;
-  signal.kind = quantity == "length" ? Kind::distance : Kind::distance_rate;
+  signal.kind = quantity == "length" ? SignalKind::distance : SignalKind::distance_rate;
   signal.a = a;
   signal.b = b;
   return signal;
@@ -83,10 +83,10 @@ std::vector<std::string> quantities_of(const Joint& joint) {
 
 /// Returns the signal of a quantity of a part, or nothing for an unknown quantity.
 std::optional<Signal> signal_of(const Part& part, const std::string& quantity) {
-  std::optional<Signal> signal = place_signal(quantity, Kind::position, Kind::velocity);
+  std::optional<Signal> signal = place_signal(quantity, SignalKind::position, SignalKind::velocity);
   if (const int i = component(quantity, "omega."); i >= 0) {
     signal.emplace();
-    signal->kind = Kind::angular_velocity;
+    signal->kind = SignalKind::angular_velocity;
     signal->index = i;
   }
   for (const bool rate : {false, true}) {
@@ -95,7 +95,7 @@ std::optional<Signal> signal_of(const Part& part, const std::string& quantity) {
     const int k = part.parameters().dynamic_number(rate ? quantity.substr(0, quantity.size() - 4) : quantity);
     if (k < 0) continue;
     signal.emplace();
-    signal->kind = rate ? Kind::parameter_rate : Kind::parameter;
+    signal->kind = rate ? SignalKind::parameter_rate : SignalKind::parameter;
     signal->index = k;
   }
   if (signal) signal->part = &part;
@@ -109,7 +109,7 @@ std::optional<Signal> signal_of(MultiBody& body, const Joint& joint, const std::
   for (const JointQuantity& known : kJointQuantities) {
     if (known.joint != std::string(joint.type()) || known.quantity != quantity) continue;
     Signal signal;
-    signal.kind = known.rate ? Kind::coordinate_rate : Kind::coordinate;
+    signal.kind = known.rate ? SignalKind::coordinate_rate : SignalKind::coordinate;
     signal.coordinate = &body.coordinate(joint);
     signal.index = known.row;
     return signal;
@@ -136,21 +136,21 @@ std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, co
   for (const auto& spring : body.springs())
     if (spring->name == owner) consider("spring", length_signal(quantity, spring->a, spring->b), lengths);
   if (const auto point = points.find(owner); point != points.end()) {
-    std::optional<Signal> signal = place_signal(quantity, Kind::point, Kind::point_rate);
+    std::optional<Signal> signal = place_signal(quantity, SignalKind::point, SignalKind::point_rate);
     if (signal) signal->a = point->second;
     consider("track", signal, places);
   }
   for (const auto& sensor : body.sensors()) {
     if (sensor->name != owner || !quantity.empty()) continue;
     Signal signal;
-    signal.kind = Kind::sensor;
+    signal.kind = SignalKind::sensor;
     signal.sensor = sensor.get();
     consider("sensor", signal, {});
   }
   for (std::size_t k = 0; k < body.inputs().size(); ++k) {
     if (body.inputs()[k].name != owner || !quantity.empty()) continue;
     Signal signal;
-    signal.kind = Kind::input;
+    signal.kind = SignalKind::input;
     signal.index = static_cast<int>(k);
     consider("input", signal, {});
   }
