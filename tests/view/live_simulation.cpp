@@ -193,7 +193,7 @@ TEST_CASE("the ledger counts the work of a drag") {
   CHECK(worst <= 1e-6 * largest);
 }
 
-TEST_CASE("a saved scene repeats the drags to the last bit") {
+TEST_CASE("a saved scene repeats the drags to the last bit", "[long]") {
   const std::string tolerance = R"({"tolerance": 1e-6})", fixed = R"({"step": 0.002, "integrator": "rk4"})";
   SECTION("rigid parts, a string and an elastic part, with a tolerance") {
     check_drags(hung_scene(tolerance), "egg");
