@@ -25,7 +25,8 @@ const char* const kScene = R"({
   "camera": {"eye": [0.7, -6, 1.5], "target": [0.7, 0, 0.5]}
 })";
 
-/// Runs a command of the shell in a folder on a virtual display. Returns what it prints.
+/// Runs a shell command on a virtual display, with `folder` as its working folder. Returns its standard
+/// output.
 std::string on_display(const NewFolder& folder, const std::string& command) {
   const std::string line = "cd '" + folder.path.string() + "' && " + PLIANT_VIRTUAL_DISPLAY +
                            " -a -s '-screen 0 1280x800x24' " + command + " > .out 2> .err";

@@ -43,7 +43,10 @@ std::unique_ptr<Joint> ball_rotation(const Joint& joint, const BallAxes& ball) {
   const FramedPoint from = framed(a, turn.toRotationMatrix().transpose() * axes), to = framed(b, axes);
   std::vector<Point> points = from.points;
   points.insert(points.end(), to.points.begin(), to.points.end());
-  return std::make_unique<JointOf<BallRotation>>(joint.name(), points, BallRotation{from.frame, to.frame});
+  BallRotation formula{};
+  formula.from = from.frame;
+  formula.to = to.frame;
+  return std::make_unique<JointOf<BallRotation>>(joint.name(), points, formula);
 }
 
 /// Returns the size of the smallest part with coordinates at a joint, m.

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <pliant/body/actuation/hinge_angle.h>
+#include <pliant/body/actuation/two_frames.h>
 #include <pliant/body/joints/hinge.h>
-#include <pliant/body/material_frame.h>
 
 namespace pliant {
 
@@ -22,12 +22,11 @@ Vec<T, 2> twist_direction(const Framed<T>& a, const Framed<T>& b) {
   return {T(a_2[1] - k * a_1[1]), T(a_2[2] - k * a_1[2])};
 }
 
-struct BallRotation {
+struct BallRotation : TwoFrames {
   static constexpr const char* name = "ball rotation";
   static constexpr const char* formula = "twist and swing of b^T a";
-  static constexpr int rows = 3, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = false, framed = true;
-  MaterialFrame from, to;
+  static constexpr int rows = 3;
+  static constexpr bool one_sided = false;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

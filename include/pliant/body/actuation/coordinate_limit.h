@@ -12,8 +12,8 @@
 
 #include <pliant/body/actuation/ball_rotation.h>
 #include <pliant/body/actuation/hinge_angle.h>
+#include <pliant/body/actuation/two_frames.h>
 #include <pliant/body/joints/hinge.h>
-#include <pliant/body/material_frame.h>
 
 namespace pliant {
 
@@ -25,12 +25,15 @@ struct LimitRange {
   double restitution = 0;  ///< from 0 to 1
 };
 
-struct HingeLimit : LimitRange {
+/// The base of the formulas of limits: one one-sided row.
+struct LimitFormula : LimitRange, TwoFrames {
+  static constexpr int rows = 1;
+  static constexpr bool one_sided = true;
+};
+
+struct HingeLimit : LimitFormula {
   static constexpr const char* name = "hinge limit";
   static constexpr const char* formula = "size (half - sign (angle - middle)) >= 0";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = true, framed = true;
-  MaterialFrame from, to;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
@@ -41,12 +44,9 @@ struct HingeLimit : LimitRange {
   }
 };
 
-struct SliderLimit : LimitRange {
+struct SliderLimit : LimitFormula {
   static constexpr const char* name = "slider limit";
   static constexpr const char* formula = "half - sign (position - middle) >= 0";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = true, framed = true;
-  MaterialFrame from, to;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
@@ -55,12 +55,9 @@ struct SliderLimit : LimitRange {
   }
 };
 
-struct SwingLimit : LimitRange {  // half: the largest swing
+struct SwingLimit : LimitFormula {  // half: the largest swing
   static constexpr const char* name = "swing limit";
   static constexpr const char* formula = "size (max^2 - swing^2) / (2 max) >= 0";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = true, framed = true;
-  MaterialFrame from, to;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
@@ -69,12 +66,9 @@ struct SwingLimit : LimitRange {  // half: the largest swing
   }
 };
 
-struct TwistLimit : LimitRange {
+struct TwistLimit : LimitFormula {
   static constexpr const char* name = "twist limit";
   static constexpr const char* formula = "size (half - sign (twist - middle)) >= 0";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = true, framed = true;
-  MaterialFrame from, to;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

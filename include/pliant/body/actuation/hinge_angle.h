@@ -3,7 +3,7 @@
 // Here a and b are the frames of the hinge at x_0 and y_0; b_1 is the direction of the pin.
 #pragma once
 
-#include <pliant/body/material_frame.h>
+#include <pliant/body/actuation/two_frames.h>
 #include <pliant/math/rotation_vector.h>
 
 namespace pliant {
@@ -19,12 +19,11 @@ T angle_of(const T& c, const T& s) {
   return T(plain(sine) < 0 ? -kPi : kPi) - sine * angle_over_sine(T(-cosine), sine2);
 }
 
-struct HingeAngle {
+struct HingeAngle : TwoFrames {
   static constexpr const char* name = "hinge angle";
   static constexpr const char* formula = "atan2(a_2 . b_3, a_2 . b_2)";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = false, framed = true;
-  MaterialFrame from, to;
+  static constexpr int rows = 1;
+  static constexpr bool one_sided = false;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

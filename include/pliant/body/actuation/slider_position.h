@@ -2,16 +2,15 @@
 // at y_0.
 #pragma once
 
-#include <pliant/body/material_frame.h>
+#include <pliant/body/actuation/two_frames.h>
 
 namespace pliant {
 
-struct SliderPosition {
+struct SliderPosition : TwoFrames {
   static constexpr const char* name = "slider position";
   static constexpr const char* formula = "b_1 . (x_0 - y_0)";
-  static constexpr int rows = 1, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = false, framed = true;
-  MaterialFrame from, to;
+  static constexpr int rows = 1;
+  static constexpr bool one_sided = false;
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
