@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include <pliant/body/dynamics.h>
 #include <pliant/body/stages/part_stages.h>
@@ -42,8 +41,8 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Wo
 PLIANT_INLINE void Dynamics::add_energy(const DriveModel& m, const Evaluation<double>& e,
                                         Ledger& ledger) const {
   if (!detail::stores_energy(*model_, m)) return;
-  double error = m.drive->target.constant() - detail::signal_value(e, m.on);
-  if (m.drive->angle) error -= 2 * kPi * std::round(error / (2 * kPi));
+  const double error =
+      detail::coordinate_difference(*m.drive, m.drive->target.constant() - detail::signal_value(e, m.on));
   ledger.springs += 0.5 * m.drive->stiffness.constant() * error * error;
 }
 

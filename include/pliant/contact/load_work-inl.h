@@ -123,11 +123,10 @@ PLIANT_INLINE double LoadWork::work_until(double t, const State& to) {
   for (const DriveModel& m : model.drives()) {
     if (!load_work::has_actuation(model, m)) continue;
     const double x = after.drives[drive];
-    double change = x - before_.drives[drive];
+    const double change = detail::coordinate_difference(*m.drive, x - before_.drives[drive]);
     ++drive;
     if (!detail::acts_at(model, m, t)) continue;
     const detail::DriveForce<double> f = detail::force_of(e, m, x, detail::signal_rate(e, m.on));
-    if (m.drive->angle) change -= 2 * kPi * std::round(change / (2 * kPi));
     work += (f.elastic + f.damping) * change;
   }
   return work;

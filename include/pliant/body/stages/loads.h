@@ -63,8 +63,7 @@ struct DriveForce {
 template <class S>
 DriveForce<S> force_of(const Evaluation<S>& e, const DriveModel& m, const S& x, const S& x_dot) {
   const Drive& drive = *m.drive;
-  S error = value_of(e, m.target) - x;
-  if (drive.angle) error = error - S(2 * kPi * std::round(plain(error) / (2 * kPi)));
+  const S error = coordinate_difference(drive, S(value_of(e, m.target) - x));
   const S target_rate = drive.target_rate ? value_of(e, m.target_rate) : S(drive.target.of_time().at(e.t).d);
   DriveForce<S> f{value_of(e, m.stiffness) * error + value_of(e, m.force),
                   value_of(e, m.damping) * S(target_rate - x_dot)};

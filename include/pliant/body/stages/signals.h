@@ -72,6 +72,13 @@ bool acts(const Evaluation<S>& e, const DriveModel& m) {
   return false;
 }
 
+/// Returns a difference of two values of the coordinate of a drive: for an angle, in [-pi, pi].
+template <class S>
+S coordinate_difference(const Drive& drive, const S& difference) {
+  if (!drive.angle) return difference;
+  return difference - S(2 * kPi * std::round(plain(difference) / (2 * kPi)));
+}
+
 /// Returns whether the ledger has the energy of a drive: a spring and damper that acts at all times.
 inline bool stores_energy(const Model& model, const DriveModel& m) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
