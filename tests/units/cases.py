@@ -202,9 +202,34 @@ def others():
         "springs": [{"from": {"part": "a", "at": TOP}, "to": {"part": "b", "at": TOP}, "stiffness": 300}]}
 
 
+def actuation():
+    """Drives and limits of joints and of a parameter, a muscle, sensors and loads that read the state."""
+    servo = {"target": "0.4 * sin(20 * t) + 0.1 * height", "stiffness": 2, "damping": 0.03, "max_force": 0.3}
+    motor = {"rate": 2, "damping": 3, "force": "-1e3 * rail.position"}
+    parts = [part("a", "box", BOX, **moving(0)), soft_part("b", position=[0.13, -0.21, -0.9]),
+             part("c", "box", BOX, position=[1, 0, 0]), part("d", "box", BOX, position=[2, 0, 0])]
+    parts[1]["parameters"]["taper.tx"]["drive"] = {"target": "0.3 * b.a1", "stiffness": 10, "damping": 0.1}
+    joints = [{"type": "ball", "name": "neck", "from": {"part": "a", "at": TOP}, "to": {"world": [0.13, -0.21, 1]},
+               "drive": {"target": [0.1, "0.3 * sin(9 * t)", "-0.1 * neck.swing_z_rate"], "stiffness": 3},
+               "max_swing": 2},
+              {"type": "hinge", "name": "knee", "from": {"part": "b", "at": TOP}, "drive": servo,
+               "to": {"part": "a", "at": {"direction": [0, 0, -1]}}, "axis": [0, 1, 0]},
+              {"type": "slider", "name": "rail", "from": {"part": "c", "at": TOP}, "to": {"world": [1, 0, 0]},
+               "axis": [0, 0, 1], "drive": motor, "limits": [-0.02, 0.03], "restitution": 0.4}]
+    yield "actuation", {
+        "time": timed(), "parts": parts, "joints": joints,
+        "sensors": [{"name": "height", "value": "a.z + 0.01 * knee.rate"}],
+        "springs": [{"name": "muscle", "from": {"part": "c", "at": TOP}, "to": {"part": "d", "at": TOP},
+                     "stiffness": "300 + 20 * muscle.length", "damping": 0.1,
+                     "rest_length": "0.9 - 0.01 * muscle.rate"}],
+        "forces": [{"part": "d", "at": TOP, "force": [0, "-3 * d.y - 0.5 * d.vy", 0]}],
+        "torques": [{"part": "d", "against": "c", "torque": [0, "-0.1 * d.omega.y", "0.2 * c.z"]}]}
+
+
 def all_cases():
     """Returns the scenes by name."""
     cases = {}
-    for group in (joints, chains, methods, stiff_motion, rigid_contact, tolerances, local_deformation, others):
+    for group in (joints, chains, methods, stiff_motion, rigid_contact, tolerances, local_deformation, actuation,
+                  others):
         cases.update(group())
     return cases

@@ -7,8 +7,8 @@ scene therefore needs an entry here.
 import collections
 import re
 
-# One metre, one kilogram and one second in the new units.
-Units = collections.namedtuple("Units", "length mass time")
+# One metre, one kilogram and one second in the new units. hinges: names of joints whose rate is an angular speed.
+Units = collections.namedtuple("Units", "length mass time hinges", defaults=[frozenset()])
 
 NAMED_UNITS = {"N": "kg m / s^2", "Pa": "kg / m s^2"}
 LENGTHS = {"r", "l", "a1", "a2", "a3", "b1"}  # the parameters that are lengths; all others have no dimension
@@ -23,7 +23,8 @@ KEEP = ""
 OBJECTS = {
     "scene": {"name": KEEP, "description": KEEP, "gravity": "m/s^2", "time": "[time]", "parts": "[part]",
               "joints": "[joint]", "stabilization": "[stabilization]", "contact": "[contact]",
-              "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "output": "[output]"},
+              "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "sensors": "[sensor]",
+              "output": "[output]"},
     "time": {"end": "s", "step": "s", "integrator": KEEP, "tolerance": KEEP, "solver": KEEP},
     "part": {"name": KEEP, "shape": KEEP, "deformations": KEEP, "shell": KEEP, "thickness": "m", "local": "[local]",
              "mass": "kg", "inertia": "[inertia]", "position": "m", "orientation": KEEP, "velocity": "m/s",
@@ -38,7 +39,12 @@ OBJECTS = {
     "motion": {"position": "m", "turn": "[turn]"},
     "turn": {"axis": KEEP, "angle": "rad"},
     "joint": {"type": KEEP, "name": KEEP, "from": "[point]", "to": "[point]", "length": "m", "axis": KEEP,
-              "from_axis": KEEP, "rotation": KEEP, "on": "s", "off": "s"},
+              "from_axis": KEEP, "rotation": KEEP, "drive": "[turning_drive]", "limits": "rad", "max_swing": "rad",
+              "twist_limits": "rad", "restitution": KEEP, "on": "s", "off": "s"},
+    "turning_drive": {"target": "rad", "rate": "1/s", "stiffness": "N m", "damping": "N m s", "force": "N m",
+                      "max_force": "N m"},
+    "sliding_drive": {"target": "m", "rate": "m/s", "stiffness": "N/m", "damping": "N s/m", "force": "N",
+                      "max_force": "N"},
     "point": {"part": KEEP, "at": "[place]", "world": "m"},
     "place": {"u": KEEP, "v": KEEP, "w": KEEP, "direction": KEEP, "near": "m", "patch": "m"},
     "stabilization": {"rule": KEEP, "rate": "1/s", "stab_alpha": "1/s", "stab_beta": "1/s", "speed": KEEP,
@@ -51,14 +57,22 @@ OBJECTS = {
     "obstacle": {"name": KEEP, "mesh": KEEP, "half_extents": "m", "scale": "m", "position": "m",
                  "orientation": KEEP, "on": "s", "off": "s"},
     "spring": {"name": KEEP, "from": "[point]", "to": "[point]", "stiffness": "N/m", "damping": "N s/m",
-               "rest_length": "m"},
+               "rest_length": "m", "on": "s", "off": "s"},
     "force": {"name": KEEP, "part": KEEP, "at": "[place]", "force": "N", "frame": KEEP},
+    "sensor": {"name": KEEP, "value": "rad"},  # the value keeps its old unit: its factor is that of an angle, 1
     "torque": {"name": KEEP, "part": KEEP, "against": KEEP, "torque": "N m", "frame": KEEP},
     "output": {"frame_rate": "1/s"},
 }
 # Keys for pictures, which are left out.
 PICTURES = {"$schema", "//", "tracks", "coloring", "camera", "light", "ground", "color", "visible", "shown", "size",
             "every_part", "contacts"}
+# What an entry of a list is instead, by its type.
+VARIANTS = {"slider": {"drive": "[sliding_drive]", "limits": "m"}}
+# The units of the quantities of the state that formulas read. All others keep their number: angles, sensors, exponents.
+SIGNALS = {**dict.fromkeys(["x", "y", "z", "length", "position"], "m"), "rate": "m/s",
+           **dict.fromkeys(["vx", "vy", "vz"], "m/s"),
+           **dict.fromkeys(["omega.x", "omega.y", "omega.z", "twist_rate", "swing_y_rate", "swing_z_rate"], "1/s")}
+SIGNAL = re.compile(r"[A-Za-z_][A-Za-z_0-9]*(?:\.[A-Za-z_][A-Za-z_0-9]*)*")
 # Values with a unit that a scene may leave out.
 DEFAULTS = {
     "scene": {"gravity": [0, 0, -9.81], "time": {}, "stabilization": {}, "output": {}},
@@ -87,10 +101,26 @@ def size_of_unit(unit, units):
     return result
 
 
+def size_of_signal(name, units):
+    """The size of the unit of a quantity that a formula reads: t, NAME.QUANTITY, or a sensor."""
+    owner, _, quantity = name.partition(".")
+    if name == "t":
+        return units.time
+    if quantity == "rate" and owner in units.hinges:
+        return 1 / units.time
+    if quantity in SIGNALS:
+        return size_of_unit(SIGNALS[quantity], units)
+    parameter = quantity.removesuffix("_dot")
+    return size_of_parameter(parameter, units) / (units.time if parameter != quantity else 1)
+
+
 def scaled(value, factor, units):
-    """A number, a function of time, or a list of them, in the new units."""
+    """A number, a formula of time and state, or a list of them, in the new units."""
     if isinstance(value, str):
-        return f"{factor!r} * ({re.sub(r'(?<![A-Za-z_])t(?![A-Za-z_0-9])', f'({1 / units.time!r} * t)', value)})"
+        def in_old_units(match):
+            size = size_of_signal(match[0], units)
+            return match[0] if size == 1 else f"({1 / size!r} * {match[0]})"
+        return f"{factor!r} * ({SIGNAL.sub(in_old_units, value)})"
     if isinstance(value, list):
         return [scaled(entry, factor, units) for entry in value]
     if isinstance(value, dict):  # key frames
@@ -111,9 +141,17 @@ def scaled_parameters(part, units):
         if not isinstance(value, dict) or "t" in value:
             result[name] = scaled(value, size, units)
             continue
-        factors = {"dynamic": None, "initial_rate": size / units.time, "stiffness": energy / size**2}
-        result[name] = {key: entry if key == "dynamic" else scaled(entry, factors.get(key, size), units)
-                        for key, entry in value.items()}
+        force = energy / size
+        factors = {"initial_rate": size / units.time, "stiffness": force / size}
+        drive = {"rate": size / units.time, "stiffness": force / size, "damping": force / size * units.time,
+                 "force": force, "max_force": force}
+        result[name] = {key: scaled(entry, factors.get(key, size), units)
+                        for key, entry in value.items() if key not in ("dynamic", "drive")}
+        if "dynamic" in value:
+            result[name]["dynamic"] = value["dynamic"]
+        if "drive" in value:
+            result[name]["drive"] = {key: scaled(entry, drive.get(key, size), units)
+                                     for key, entry in value["drive"].items()}
     return result
 
 
@@ -145,7 +183,7 @@ def scaled_object(kind, values, units):
     for key, value in {**DEFAULTS.get(kind, {}), **values}.items():
         if key in PICTURES:
             continue
-        unit = OBJECTS[kind][key]
+        unit = VARIANTS.get(values.get("type"), {}).get(key) or OBJECTS[kind][key]
         if unit.startswith("["):
             result[key] = scaled_object(unit[1:-1], value, units)
         elif unit == KEEP:
@@ -158,6 +196,7 @@ def scaled_object(kind, values, units):
 def scale_scene(scene, units):
     """Returns the scene in the new units."""
     materials = scene.get("materials", {})
+    units = units._replace(hinges={joint.get("name") for joint in scene.get("joints", []) if joint["type"] == "hinge"})
     scene = {key: value for key, value in scene.items() if key != "materials"}
     parts = [scaled_part(part, materials, units) for part in scene.pop("parts")]
     return {**scaled_object("scene", scene, units), "parts": parts}
