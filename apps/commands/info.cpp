@@ -135,6 +135,9 @@ void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulati
     print_point(simulation, force->at);
     std::cout << "\n";
   }
+  for (const auto& force : scene.body.distributed_forces())
+    std::cout << (force->domain == pliant::DistributedForce::Domain::body ? "body" : "surface") << " force "
+              << force->name << ": " << force->part->name() << "\n";
   for (const auto& torque : scene.body.torques())
     std::cout << "torque " << torque->name << ": " << torque->part->name()
               << (torque->against == nullptr ? "" : " against " + torque->against->name()) << "\n";

@@ -56,6 +56,10 @@ class TermCheck {
           return "the force of spring '" + s.spring->name + "'";
     for (const ForceModel& f : model_.forces())
       if (!force_at(f.at).allFinite()) return "the force '" + f.force->name + "'";
+    for (const DistributedModel& m : model_.distributed_forces())
+      for (Eigen::Index k = 0; k < m.X.cols(); ++k)
+        if (!force_at({m.part, m.first_port + static_cast<int>(k)}).allFinite())
+          return "the distributed force '" + m.force->name + "'";
     for (const TorqueModel& m : model_.torques())
       if (!detail::torque_of(evaluation_, m).allFinite()) return "the torque '" + m.torque->name + "'";
     for (const DriveModel& m : model_.drives()) {

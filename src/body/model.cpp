@@ -35,8 +35,9 @@ std::vector<int> all_parts(const MultiBody& body) {
 
 }  // namespace
 
-RigidMass::RigidMass(const Inertia<double>& constant, const VecX<double>& floor) : inertia(constant) {
-  factor.compute(inertia.M, floor);
+RigidMass::RigidMass(const Inertia<double>& constant, const VecX<double>& floor, bool diagonal)
+    : inertia(constant) {
+  factor.compute(diagonal ? MatX<double>(inertia.M.diagonal().asDiagonal()) : MatX<double>(inertia.M), floor);
   for (int k = 0; k < 6; ++k) {
     VecMax<double> column = VecMax<double>::Unit(6, k);
     factor.solve(column);
@@ -53,6 +54,7 @@ Model::Model(const MultiBody& body, std::vector<int> parts) : body_(&body), part
   for (const int i : part_numbers_) add_part(*body.parts()[static_cast<std::size_t>(i)], masses);
   add_springs();
   add_forces_and_torques();
+  add_distributed_forces();
   body.stabilization.check();
   for (std::size_t j = 0; j < body.joints().size(); ++j) {
     const std::vector<Point>& points = body.joints()[j]->points();
@@ -132,7 +134,7 @@ void Model::add_part(Part& part, RigidMasses& known) {
   for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part.inertia_floor(k);
   if (part.rigid()) {
     std::shared_ptr<const RigidMass>& mass = known[&part.constants()];
-    if (!mass) mass = std::make_shared<const RigidMass>(part.rest_inertia(), m.inertia_floor);
+    if (!mass) mass = std::make_shared<const RigidMass>(part.rest_inertia(), m.inertia_floor, part.has_diagonal_mass());
     m.rigid_mass = mass;
   }
   parts_.push_back(std::move(m));

@@ -31,6 +31,8 @@ void Model::for_each_load(Act&& act) const {
   for (const SpringModel& spring : springs_) with({spring.a.part, spring.b.part}, spring.functions);
   for (const ForceModel& force : forces_) with({force.at.part}, force.components);
   for (const TorqueModel& torque : torques_) with({torque.part, torque.against}, torque.components);
+  for (const DistributedModel& m : distributed_forces_)
+    with({m.part}, {m.density[0], m.density[1], m.density[2], m.pressure});
   for (const DriveModel& drive : drives_) {
     std::vector<int> parts;
     append_parts(drive.on, parts);
@@ -53,6 +55,7 @@ void Model::add_actuation() {
     if (m.torque->torque.reads_state())
       for (const StateFunction& component : m.torque->torque.component)
         m.components.push_back(resolve(component, "torque '" + m.torque->name + "'"));
+  resolve_distributed_forces();
   add_drives();
 }
 
@@ -133,6 +136,7 @@ SignalModel Model::resolve(const Signal& signal, const std::string& what) {
       m.place = place_of(coordinates_, signal.coordinate);
       break;
     case Kind::input:
+    case Kind::at_point:
       break;
     case Kind::sensor: {
       const auto same = [&](const FunctionModel& s) { return s.function == &signal.sensor->value; };

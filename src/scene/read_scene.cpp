@@ -246,6 +246,11 @@ class SceneReader {
     for (const auto& [r, spring] : springs_) read_spring_law(r, states, *spring);
     for (const Reader& r : named("forces")) read_force(r, points, states);
     for (const Reader& r : named("torques")) read_torque(r, points, states);
+    using Domain = DistributedForce::Domain;
+    const StateReader on_surface(*scene_, faults_, quantities_at_points(Domain::surface));
+    for (const Reader& r : named("surface_forces")) read_surface_force(r, points, on_surface);
+    const StateReader in_body(*scene_, faults_, quantities_at_points(Domain::body));
+    for (const Reader& r : named("body_forces")) read_body_force(r, points, in_body);
     for (const auto& [r, joint] : joints_)
       if (r.json().find("drive") != nullptr && !r.faulty("drive"))
         read_joint_drive(r.object("drive"), *joint, states, scene_->body);
@@ -286,6 +291,40 @@ class SceneReader {
     if (torque)
       scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, *torque, frame(r))
           .against = against;
+  }
+  void read_surface_force(const Reader& r, const PointReader& points, const StateReader& states) {
+    const Part* part = points.part(r);
+    const bool complete = r.json().find("traction") != nullptr || r.json().find("pressure") != nullptr;
+    if (!complete) faults_.value(r.json(), "expected a \"traction\" or a \"pressure\"");
+    StateVector traction;
+    StateFunction pressure;
+    bool good = part != nullptr && complete;
+    if (r.json().find("traction") != nullptr) {
+      const std::optional<StateVector> read = states.vector(r, "traction");
+      good = good && read;
+      if (read) traction = *read;
+    }
+    if (r.json().find("pressure") != nullptr && r.given("pressure")) {
+      const std::optional<StateFunction> read = states.function(r.at("pressure"));
+      good = good && read;
+      if (read) pressure = *read;
+    }
+    if (!good) return;
+    const std::string name = name_of(r, "surface_force", scene_->body.distributed_forces().size());
+    scene_->body.surface_force(name, *part, traction, pressure).resolution =
+        static_cast<int>(r.integer("resolution"));
+  }
+  void read_body_force(const Reader& r, const PointReader& points, const StateReader& states) {
+    const Part* part = points.part(r);
+    const std::optional<StateVector> acceleration = states.vector(r, "acceleration");
+    if (part != nullptr && part->local() == nullptr && part->mass_points().n_points == 0)
+      return faults_.place(
+          r.at("part"),
+          "the \"inertia\" of this part does not say where its mass is; expected a part with a "
+          "density or a mass");
+    if (part != nullptr && acceleration)
+      scene_->body.body_force(name_of(r, "body_force", scene_->body.distributed_forces().size()), *part,
+                              *acceleration);
   }
   void read_track(const Reader& r, const PointReader& points) {
     const std::optional<Point> at = points.on_part(r);

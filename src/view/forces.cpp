@@ -49,6 +49,14 @@ std::vector<ForceArrow> load_forces(const Simulation& simulation) {
     const auto at = detail::motion_of(e, m.at, m.force->at);
     arrows.push_back({at.x, detail::force_of(e, m, at)});
   }
+  for (const DistributedModel& m : model.distributed_forces()) {
+    const PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(m.part)];
+    Vec3<double> sum = Vec3<double>::Zero(), middle = Vec3<double>::Zero();
+    detail::for_each_force(e, m, [&](int, const Vec3<double>& force) { sum += force; });
+    for (Eigen::Index k = 0; k < m.X.cols(); ++k)
+      middle += w.port_x[static_cast<std::size_t>(m.first_port + k)];
+    arrows.push_back({middle / static_cast<double>(m.X.cols()), sum});
+  }
   return arrows;
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/LU>
 
+#include <pliant/body/actuation/named_signal.h>
+
 #include "differences.h"
 #include "draws.h"
 #include "motion.h"
@@ -37,6 +39,12 @@ void busy_scene(MultiBody& body) {
   body.force("own", point(a, 0.9, -1), [](double t, const Vec3<double>& x, const Vec3<double>& v) {
     return Vec3<double>(std::sin(3 * t) - x[0], -0.4 * v[1], 2 * x[2]);
   });
+  const auto& on_surface = quantities_at_points(DistributedForce::Domain::surface);
+  auto formula = [&](const char* text) { return state_formula(body, text, {}, on_surface); };
+  body.surface_force("wind", a, {formula("3 * (1 - vx) * abs(nz)"), formula("b.z - y"), formula("40 * X * x")},
+                     formula("200 * smoothstep(-2, 2, z) + 5 * b.vx"))
+      .resolution = 2;
+  body.body_force("field", b, {formula("-4 * x * y"), formula("2 * vz"), StateFunction(0.3)});
   body.torque("turn", b, TimeVector(1, test::wave(2, 3, 4), 0));
   body.torque("spin", a, TimeVector(0, 2, test::wave(0, 4, 5)), Frame::body);
   body.torque("muscle", b, TimeVector(1, 0, test::wave(3, 2, 4)), Frame::body).against = &a;

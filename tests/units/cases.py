@@ -226,10 +226,23 @@ def actuation():
         "torques": [{"part": "d", "against": "c", "torque": [0, "-0.1 * d.omega.y", "0.2 * c.z"]}]}
 
 
+def distributed_forces():
+    """Surface and body forces, and a mass distribution."""
+    water = {"part": "a", "pressure": "9000 * max(0.1 - z, 0)", "traction": ["-30 * vx * abs(nz)", 0, "40 * X"],
+             "resolution": 3}
+    yield "distributed_forces", {
+        "time": timed(),
+        "parts": [soft_part("a", mass_distribution="1 + 0.5 * Z + 0.1 * cos(v)"),
+                  part("b", "box", BOX, position=[1, 0, 0])],
+        "surface_forces": [water],
+        "body_forces": [{"part": "b", "acceleration": ["-9 * x", "-9 * y - 2 * vy", "3 * t"]},
+                        {"part": "a", "acceleration": [0, "b.z - y", "0.1 * Y"]}]}
+
+
 def all_cases():
     """Returns the scenes by name."""
     cases = {}
     for group in (joints, chains, methods, stiff_motion, rigid_contact, tolerances, local_deformation, actuation,
-                  others):
+                  distributed_forces, others):
         cases.update(group())
     return cases

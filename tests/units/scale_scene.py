@@ -23,13 +23,14 @@ KEEP = ""
 OBJECTS = {
     "scene": {"name": KEEP, "description": KEEP, "gravity": "m/s^2", "time": "[time]", "parts": "[part]",
               "joints": "[joint]", "stabilization": "[stabilization]", "contact": "[contact]",
-              "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "sensors": "[sensor]",
+              "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "surface_forces": "[surface_force]",
+              "body_forces": "[body_force]", "sensors": "[sensor]",
               "output": "[output]"},
     "time": {"end": "s", "step": "s", "integrator": KEEP, "tolerance": KEEP, "solver": KEEP},
     "part": {"name": KEEP, "shape": KEEP, "deformations": KEEP, "shell": KEEP, "thickness": "m", "local": "[local]",
-             "mass": "kg", "inertia": "[inertia]", "position": "m", "orientation": KEEP, "velocity": "m/s",
-             "angular_velocity": "1/s", "fixed": KEEP, "motion": "[motion]", "resolution": KEEP,
-             "elasticity": "[law]", "alpha": "1/s", "beta": "s", "drag": "1/s"},
+             "mass": "kg", "mass_matrix": KEEP, "mass_distribution": "rad", "inertia": "[inertia]", "position": "m",
+             "orientation": KEEP, "velocity": "m/s", "angular_velocity": "1/s", "fixed": KEEP, "motion": "[motion]",
+             "resolution": KEEP, "elasticity": "[law]", "alpha": "1/s", "beta": "s", "drag": "1/s"},
     "local": {"basis": KEEP, "degree": KEEP, "modes": KEEP, "resolution": KEEP, "order": KEEP, "laws": "[law]",
               "alpha": "1/s", "beta": "s", "dents": "[dent]"},
     "law": {"type": KEEP, "E": "Pa", "nu": KEEP, "thickness": "m", "w0": "N/m^3", "w1": "N/m", "p": "Pa",
@@ -61,6 +62,8 @@ OBJECTS = {
     "force": {"name": KEEP, "part": KEEP, "at": "[place]", "force": "N", "frame": KEEP},
     "sensor": {"name": KEEP, "value": "rad"},  # the value keeps its old unit: its factor is that of an angle, 1
     "torque": {"name": KEEP, "part": KEEP, "against": KEEP, "torque": "N m", "frame": KEEP},
+    "surface_force": {"name": KEEP, "part": KEEP, "traction": "Pa", "pressure": "Pa", "resolution": KEEP},
+    "body_force": {"name": KEEP, "part": KEEP, "acceleration": "m/s^2"},
     "output": {"frame_rate": "1/s"},
 }
 # Keys for pictures, which are left out.
@@ -72,6 +75,8 @@ VARIANTS = {"slider": {"drive": "[sliding_drive]", "limits": "m"}}
 SIGNALS = {**dict.fromkeys(["x", "y", "z", "length", "position"], "m"), "rate": "m/s",
            **dict.fromkeys(["vx", "vy", "vz"], "m/s"),
            **dict.fromkeys(["omega.x", "omega.y", "omega.z", "twist_rate", "swing_y_rate", "swing_z_rate"], "1/s")}
+# The quantities at the points of surface forces, body forces and mass distributions.
+AT_POINTS = {**dict.fromkeys(["x", "y", "z", "X", "Y", "Z"], "m"), **dict.fromkeys(["vx", "vy", "vz"], "m/s")}
 SIGNAL = re.compile(r"[A-Za-z_][A-Za-z_0-9]*(?:\.[A-Za-z_][A-Za-z_0-9]*)*")
 # Values with a unit that a scene may leave out.
 DEFAULTS = {
@@ -106,6 +111,8 @@ def size_of_signal(name, units):
     owner, _, quantity = name.partition(".")
     if name == "t":
         return units.time
+    if name in AT_POINTS:
+        return size_of_unit(AT_POINTS[name], units)
     if quantity == "rate" and owner in units.hinges:
         return 1 / units.time
     if quantity in SIGNALS:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -22,8 +23,9 @@ namespace pliant {
 /// The constant mass matrix of a rigid part. Parts that share their constants (part/constants_cache.h) share
 /// it, so that it stays in the cache from part to part.
 struct RigidMass {
-  /// constant: M (6 x 6), first moment and mass. floor: see SymmetricFactor.
-  RigidMass(const Inertia<double>& constant, const VecX<double>& floor);
+  /// constant: M (6 x 6), first moment and mass. floor: see SymmetricFactor. diagonal: whether factor and
+  /// inverse are those of the diagonal of M (Part::use_diagonal_mass).
+  RigidMass(const Inertia<double>& constant, const VecX<double>& floor, bool diagonal);
 
   Inertia<double> inertia;              ///< M, first moment and mass
   SymmetricFactor<double> factor;       ///< of M
@@ -120,6 +122,18 @@ struct TorqueModel {
   std::vector<FunctionModel> components;  ///< of the torque, if it reads the state; else empty
 };
 
+struct DistributedModel {
+  const DistributedForce* force;
+  int part;
+  int first_port;                        ///< its ports follow each other
+  std::array<FunctionModel, 3> density;  ///< of the force
+  FunctionModel pressure;
+  bool has_density = false;    ///< whether the density is not zero
+  Eigen::Matrix3Xi triangles;  ///< on a surface: three ports each, counted from first_port
+  VecX<double> mass;           ///< in a body: mass at each port, kg
+  Eigen::Matrix3Xd X;          ///< place of each port at rest, body frame, m
+};
+
 /// A side of a joint on a part with coordinates. A joint with both sides on the same part has one JointSide.
 struct JointSide {
   int part;
@@ -191,6 +205,7 @@ class Model {
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
   const std::vector<TorqueModel>& torques() const { return torques_; }
+  const std::vector<DistributedModel>& distributed_forces() const { return distributed_forces_; }
   const std::vector<DriveModel>& drives() const { return drives_; }
   const std::vector<CoordinateModel>& coordinates() const { return coordinates_; }
   /// The sensors, each with its number in the body. A model of some parts has the sensors of these parts.
@@ -202,7 +217,7 @@ class Model {
   /// numbers may be repeated; -1 stands for the world.
   void append_parts(const FunctionModel& function, std::vector<int>& parts) const;
   void append_parts(const SignalModel& signal, std::vector<int>& parts) const;
-  /// Numbers of the parts that loads (springs, forces, torques, drives) act on or read.
+  /// Numbers of the parts that loads (springs, forces, torques, distributed forces, drives) act on or read.
   const std::vector<int>& loaded_parts() const { return loaded_parts_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
@@ -294,6 +309,8 @@ class Model {
   void add_part(Part& part, RigidMasses& known);
   void add_springs();
   void add_forces_and_torques();
+  void add_distributed_forces();
+  void resolve_distributed_forces();
   void add_joint(const Joint& joint);
   /// Adds coordinates, sensors and drives, and resolves the functions of all loads.
   void add_actuation();
@@ -329,6 +346,7 @@ class Model {
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
   std::vector<TorqueModel> torques_;
+  std::vector<DistributedModel> distributed_forces_;
   std::vector<DriveModel> drives_;
   std::vector<CoordinateModel> coordinates_;
   std::vector<FunctionModel> sensors_;

@@ -64,6 +64,21 @@ PLIANT_INLINE Torque& MultiBody::torque(std::string name, const Part& part, Stat
   return *torques_.back();
 }
 
+PLIANT_INLINE DistributedForce& MultiBody::surface_force(std::string name, const Part& part,
+                                                         StateVector traction, StateFunction pressure) {
+  distributed_.push_back(std::make_unique<DistributedForce>(
+      DistributedForce{std::move(name), &part, DistributedForce::Domain::surface, std::move(traction),
+                       std::move(pressure)}));
+  return *distributed_.back();
+}
+
+PLIANT_INLINE DistributedForce& MultiBody::body_force(std::string name, const Part& part,
+                                                      StateVector per_mass) {
+  distributed_.push_back(std::make_unique<DistributedForce>(DistributedForce{
+      std::move(name), &part, DistributedForce::Domain::body, std::move(per_mass), StateFunction(0)}));
+  return *distributed_.back();
+}
+
 PLIANT_INLINE const Joint& MultiBody::coordinate(const Joint& joint, const BallAxes& ball) {
   for (const std::unique_ptr<Joint>& known : coordinates_)
     if (known->name() == joint.name()) return *known;

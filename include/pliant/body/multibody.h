@@ -15,6 +15,7 @@
 #include <pliant/body/actuation/joint_coordinate.h>
 #include <pliant/body/constraint/stabilization.h>
 #include <pliant/body/contact_settings.h>
+#include <pliant/body/distributed/distributed_force.h>
 #include <pliant/body/joints/joint.h>
 #include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/points.h>
@@ -117,6 +118,13 @@ class MultiBody {
   /// Adds a torque (N m) on a part. frame: the frame of its components.
   Torque& torque(std::string name, const Part& part, StateVector torque, Frame frame = Frame::world);
 
+  /// Adds a force on the surface of a part: a traction (N/m^2, world) and a pressure (N/m^2) along the inward
+  /// normal. The formulas may read quantities_at_points().
+  DistributedForce& surface_force(std::string name, const Part& part, StateVector traction,
+                                  StateFunction pressure = 0);
+  /// Adds a force per mass (N/kg, world) in the body of a part. The formulas may read quantities_at_points().
+  DistributedForce& body_force(std::string name, const Part& part, StateVector per_mass);
+
   /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (twist and two
   /// components of the swing, rad), for signals and drives. It is zero at time 0 with undeformed parts,
   /// except for the position of a slider, for a hinge with from_axis and for a ball joint with
@@ -188,6 +196,7 @@ class MultiBody {
   const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }
   const std::vector<std::unique_ptr<PointForce>>& forces() const { return forces_; }
   const std::vector<std::unique_ptr<Torque>>& torques() const { return torques_; }
+  const std::vector<std::unique_ptr<DistributedForce>>& distributed_forces() const { return distributed_; }
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   const std::vector<std::unique_ptr<Joint>>& coordinates() const { return coordinates_; }
   const std::vector<std::unique_ptr<Drive>>& drives() const { return drives_; }
@@ -209,6 +218,7 @@ class MultiBody {
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;
   std::vector<std::unique_ptr<Torque>> torques_;
+  std::vector<std::unique_ptr<DistributedForce>> distributed_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::unordered_set<std::string> joint_names_;
   std::vector<std::unique_ptr<Joint>> coordinates_;  // each has the name of its joint

@@ -38,6 +38,10 @@ PLIANT_INLINE LoadWork::LoadWork(const Dynamics& dynamics, const State& from) : 
     loaded_.insert(loaded_.end(), {m.part, m.against});
     read(m.components);
   }
+  for (const DistributedModel& m : model.distributed_forces()) {
+    loaded_.push_back(m.part);
+    read({m.density[0], m.density[1], m.density[2], m.pressure});
+  }
   for (const SpringModel& s : model.springs())
     if (load_work::has_actuation(s)) {
       loaded_.insert(loaded_.end(), {s.a.part, s.b.part});
@@ -75,6 +79,8 @@ PLIANT_INLINE LoadWork::Places LoadWork::places(const Evaluation<double>& e) con
   Places places;
   for (const ForceModel& f : model.forces())
     places.forces.push_back(detail::motion_of(e, f.at, f.force->at).x);
+  for (const DistributedModel& m : model.distributed_forces())
+    places.distributed.push_back(e.part_work(m.part).port_x);
   for (const TorqueModel& m : model.torques())
     for (const int part : {m.part, m.against})
       places.rotations.push_back(part < 0 ? Mat3<double>::Identity() : e.part_work(part).R);
@@ -99,6 +105,10 @@ PLIANT_INLINE double LoadWork::work_until(double t, const State& to) {
     const Vec3<double> force = detail::force_of(e, f, detail::motion_of(e, f.at, f.force->at));
     work += force.dot(after.forces[k] - before_.forces[k]);
   }
+  for (std::size_t k = 0; k < model.distributed_forces().size(); ++k)
+    detail::for_each_force(e, model.distributed_forces()[k], [&](int port, const Vec3<double>& force) {
+      work += force.dot(after.distributed[k][at(port)] - before_.distributed[k][at(port)]);
+    });
   for (std::size_t k = 0; k < model.torques().size(); ++k) {
     const TorqueModel& m = model.torques()[k];
     Vec3<double> torque = detail::torque_of(e, m);

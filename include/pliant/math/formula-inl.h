@@ -1,6 +1,8 @@
 // Function bodies of formula.h for formulas of time.
 #pragma once
 
+#include <algorithm>
+
 #include <pliant/math/header_only.h>
 #include <pliant/math/scalar/formula_program.h>
 
@@ -20,6 +22,11 @@ PLIANT_INLINE std::uint64_t Formula::branches(double t) const {
           all = (all ^ (detail::formula_program::branch(instruction, x) ? 1U : 2U)) * prime;
       });
   return all;
+}
+
+PLIANT_INLINE bool Formula::reads_time() const {
+  return std::any_of(program_.begin(), program_.end(),
+                     [](const Instruction& each) { return each.code == Code::kTime; });
 }
 
 PLIANT_INLINE bool Formula::is_constant() const {

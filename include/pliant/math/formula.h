@@ -72,6 +72,8 @@ class Formula {
   T value(const T& time, const T* variables) const;
   /// Returns whether the formula contains named quantities.
   bool has_variables() const { return has_variables_; }
+  /// Returns whether the formula contains t.
+  bool reads_time() const;
 
   /// For a formula without named quantities: returns the value and the first and second derivative with
   /// respect to t. At a kink of abs, min or max

@@ -71,7 +71,7 @@ PLIANT_INLINE double Part::compute_inertia(PartConstants& out) const {
     return inertia;
   };
   out.rest_inertia = inertia_at_rest();
-  const double volume = total_mass() / density();
+  const double volume = mass_distribution() == nullptr ? total_mass() / density() : volume_at_rest(*this);
   if (given_mass()) {
     const double factor = *given_mass() / total_mass();
     for (Pack& m : points.mass) m *= Pack(factor);

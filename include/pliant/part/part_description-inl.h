@@ -264,6 +264,19 @@ PLIANT_INLINE Part& PartDescription::mass(double total) {
   return part();
 }
 
+PLIANT_INLINE Part& PartDescription::use_diagonal_mass() {
+  change();
+  diagonal_mass_ = true;
+  return part();
+}
+
+PLIANT_INLINE Part& PartDescription::distribute_mass(MassDistribution distribution) {
+  change();
+  if (!distribution) refuse("its mass distribution is no function");
+  mass_distribution_ = std::make_unique<const MassDistribution>(std::move(distribution));
+  return part();
+}
+
 PLIANT_INLINE Part& PartDescription::inertia(double mass, const Mat3<double>& about_origin,
                                              const Vec3<double>& centre) {
   change();
@@ -382,6 +395,13 @@ PLIANT_INLINE void PartDescription::check() const {
   if (given_inertia_ && n > 0) refuse("only a rigid part can be given an inertia; freeze its parameters");
   if (given_inertia_ && local_settings_)
     refuse("a part that deforms locally gets its inertia from its density; do not give it an inertia");
+  if (given_inertia_ && mass_distribution_)
+    refuse("its inertia is given, so that a mass distribution has no effect; give one of them");
+  if (diagonal_mass_ && local_settings_)
+    refuse("a part that deforms locally has the coupled mass matrix; do not give it a diagonal one");
+  if (mass_distribution_ && local_settings_ && local_settings_->basis != LocalSettings::Basis::nodes)
+    refuse("modes and polynomials have the same density everywhere; use the basis \"nodes\" with a mass "
+           "distribution");
   if (fixed_ && local_settings_) refuse(without_coordinates + " does not deform locally");
   check_elasticity();
 }
@@ -397,7 +417,7 @@ PLIANT_INLINE MatX<double> PartDescription::dynamic_stiffness() const {
 }
 
 PLIANT_INLINE std::optional<ConstantsKey> PartDescription::constants_key() const {
-  if (local_settings_) return std::nullopt;
+  if (local_settings_ || mass_distribution_) return std::nullopt;
   ConstantsKey key;
   detail::KeyWriter writer(key);
   const auto& self = part();
@@ -416,6 +436,7 @@ PLIANT_INLINE std::optional<ConstantsKey> PartDescription::constants_key() const
   writer.add_all(dynamic_stiffness());
   writer.add_count(shell_ ? 1 : 0);
   writer.add_count(fixed_ ? 1 : 0);
+  writer.add_count(diagonal_mass_ ? 1 : 0);
   writer.add(density_);
   writer.add_count(total_mass_ ? 1 : 0);
   writer.add(total_mass_.value_or(0));

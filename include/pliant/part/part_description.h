@@ -14,6 +14,7 @@
 #include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
 #include <pliant/part/local/local_deformation.h>
+#include <pliant/part/mass_distribution.h>
 #include <pliant/part/parameters.h>
 #include <pliant/part/prescribed_motion.h>
 
@@ -74,6 +75,13 @@ class PartDescription {
   Part& make_shell();
   /// Sets the total mass (kg). The masses of all mass points are scaled to this total.
   Part& mass(double total);
+  /// Sets the mass distribution mu(u), Eq. (11): density() times a function of the material point. Not with
+  /// inertia(), nor with local deformation by modes or polynomials.
+  Part& distribute_mass(MassDistribution distribution);
+  /// Makes accelerations follow from the diagonal of M, as section 5 of the paper does for speed: velocities of
+  /// different kinds are then not coupled by inertia. This saves no time here, and is for comparisons: the
+  /// energy, which has the whole of M, is not conserved. Not with local deformation.
+  Part& use_diagonal_mass();
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
   /// of mass (m, body frame) of a rigid part. These values replace the density.
   Part& inertia(double mass, const Mat3<double>& about_origin,
@@ -98,6 +106,9 @@ class PartDescription {
   /// The density that the constructor got: kg/m^3 of a solid, kg/m^2 of a shell. mass() and inertia() do not
   /// change this value.
   double density() const { return density_; }
+  /// The function that multiplies the density; nullptr if the density is the same everywhere.
+  const MassDistribution* mass_distribution() const { return mass_distribution_.get(); }
+  bool has_diagonal_mass() const { return diagonal_mass_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
   double drag() const { return drag_; }
@@ -146,7 +157,7 @@ class PartDescription {
   /// K_s over the dynamic parameters.
   MatX<double> dynamic_stiffness() const;
   /// Returns the bits of all settings on which the constants depend; equal keys give equal constants. Returns
-  /// nullopt for a part that deforms locally, because its laws are functions, which cannot be compared.
+  /// nullopt for a part that deforms locally or has a mass distribution: functions cannot be compared.
   /// update_parameters() must have run.
   std::optional<ConstantsKey> constants_key() const;
 
@@ -178,12 +189,13 @@ class PartDescription {
   std::optional<double> total_mass_;
   // Settings that few parts have are on the heap, so that a part without them is small.
   std::unique_ptr<const Inertia<double>> given_inertia_;
+  std::unique_ptr<const MassDistribution> mass_distribution_;
   std::unique_ptr<const PrescribedMotion> motion_;
   std::unique_ptr<const LocalSettings> local_settings_;
   std::unique_ptr<const ContinuumSettings> continuum_settings_;
   MatX<double> stiffness_;  // K_s over all parameters, frozen ones included
   double alpha_ = 0, beta_ = 0, drag_ = 0;
-  bool fixed_ = false, shell_ = false, changed_ = true;
+  bool fixed_ = false, shell_ = false, diagonal_mass_ = false, changed_ = true;
   Vec3<double> c0_ = Vec3<double>::Zero(), c0_dot_ = Vec3<double>::Zero(), omega0_ = Vec3<double>::Zero();
   Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
 };

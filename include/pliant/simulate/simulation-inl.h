@@ -371,9 +371,10 @@ PLIANT_INLINE StepError Simulation::try_step() {
 /// instead the ratio of the step to longest_contact_step(). before: the counters before the step.
 PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before, StepError& result) {
   const bool may_double = contact_->may_double();
-  // The work of point forces and drives on resting bodies is computed for a motion that the contacts prevent.
+  // The work of forces and drives on resting bodies is computed for a motion that the contacts prevent.
   // Short steps limit the error of this work.
-  if (!may_double || !model_.forces().empty() || !model_.drives().empty()) {
+  const bool has_forces = !model_.forces().empty() || !model_.distributed_forces().empty();
+  if (!may_double || has_forces || !model_.drives().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
     if (!may_double || share > 1) {
       result.order = 0;
@@ -564,6 +565,12 @@ PLIANT_INLINE void Simulation::set_state(State state) {
   first_ = state_;
   switching_.forget_after(time() + simulation::kNear * state_.h);
   if (contact_) contact_->begin_step();  // no contacts yet
+}
+
+PLIANT_INLINE VecX<double> Simulation::sensors() {
+  if (model_.sensors().empty()) return VecX<double>(0);
+  dynamics_.accelerations(state_.time(), state_.q, state_.v, state_, output_work_);
+  return dynamics_.sensor_values(state_.time(), state_, output_work_);
 }
 
 PLIANT_INLINE Ledger Simulation::ledger() {

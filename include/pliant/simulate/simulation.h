@@ -72,6 +72,10 @@ class Simulation {
   /// digital controller if the caller advances by step(sampling time). Recordings do not contain the inputs.
   void set_controller(Controller controller) { controller_ = std::move(controller); }
 
+  /// Returns the values of the sensors at the state, in the order of MultiBody::sensors(); for controllers and
+  /// output.
+  VecX<double> sensors();
+
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
   /// Returns the workspace of ledger(), for other evaluations of output. No step reads it.

@@ -1,5 +1,6 @@
 #include <pliant/body/actuation/named_signal.h>
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -163,13 +164,22 @@ std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, co
                               listed(known));
 }
 
-StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points) {
+StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points,
+                            const std::vector<std::string>& at_points) {
   std::vector<Signal> signals;
   std::map<std::pair<std::string, std::string>, int> numbers;  // of the names read so far
   Formula formula(text, [&](const std::string& owner, const std::string& quantity) {
     const auto [known, is_new] = numbers.try_emplace({owner, quantity}, static_cast<int>(signals.size()));
     if (!is_new) return known->second;
-    const std::optional<Signal> signal = named_signal(body, owner, quantity, points);
+    std::optional<Signal> signal;
+    const auto at_point = std::find(at_points.begin(), at_points.end(), owner);
+    if (quantity.empty() && at_point != at_points.end()) {
+      signal.emplace();
+      signal->kind = SignalKind::at_point;
+      signal->index = static_cast<int>(at_point - at_points.begin());
+    } else {
+      signal = named_signal(body, owner, quantity, points);
+    }
     if (!signal && quantity.empty()) return -1;
     if (!signal)
       throw std::invalid_argument("there is no part, joint, spring, track, sensor or input \"" + owner +

@@ -201,6 +201,8 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
   }
   mesh.X = part.s(mesh.nodes, part.parameters().rest()).transpose();
   mesh.mass = part.shell() ? mesh.areas() : lumped_mass(mesh.X, mesh.tetrahedra, 1);
+  if (part.mass_distribution() != nullptr)
+    mesh.mass.array() *= mass_multiples(part, *part.mass_distribution(), mesh.nodes).array();
   mesh.density = part.total_mass() / mesh.mass.sum();
   mesh.mass *= mesh.density;
   constexpr double rounding = 1e-10;

@@ -279,11 +279,14 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
 
 }  // namespace
 
-MassPoints place_mass_points(const Part& part, int doublings) {
-  RestShape shape(part);
+namespace {
+
+/// Returns the points of a part with a mass distribution; nullptr: the same density everywhere.
+MassPoints place_points(const Part& part, const MassDistribution* distribution, int doublings) {
+  RestShape shape(part, distribution);
   throw_if_folded(part, shape.rest, "rest");
   if (part.n_s() > 0) throw_if_folded(part, initial_values(part), "initial");
-  shape.octant = shape.points_apart && octant_panels(shape) && planes_mirror(part);
+  shape.octant = distribution == nullptr && shape.points_apart && octant_panels(shape) && planes_mirror(part);
   const MassIntegrands integrands(shape);
   const bool affine = shape.follows == Follows::affine;
   PlacedPoints placed = shape.by_sections ? place_slices(shape, integrands, 2 * doublings)
@@ -299,6 +302,19 @@ MassPoints place_mass_points(const Part& part, int doublings) {
   out.level = placed.level;
   out.relative_error = placed.remaining;
   return out;
+}
+
+}  // namespace
+
+MassPoints place_mass_points(const Part& part, int doublings) {
+  return place_points(part, part.mass_distribution(), doublings);
+}
+
+double volume_at_rest(const Part& part) {
+  double mass = 0;
+  for (const Pack& four : place_points(part, nullptr, 0).mass)
+    for (int i = 0; i < Pack::kLanes; ++i) mass += four[i];
+  return mass / part.density();
 }
 
 }  // namespace pliant

@@ -100,14 +100,16 @@ bool plane_rings(const RestShape& r) {
 
 }  // namespace
 
-RestShape::RestShape(const Part& whole)
+RestShape::RestShape(const Part& whole, const MassDistribution* mass_distribution)
     : part(whole),
+      distribution(mass_distribution),
       rest(whole.parameters().rest()),
       a(rest.b.data()),
       follows(pliant::follows(whole)),
       dynamic_exponents(has_dynamic_exponent(whole)) {
   if (dynamic_exponents) find_kinks();
-  by_sections = !part.shell() && follows <= Follows::section && part.shape().has_sections();
+  // The moments of sections are closed forms for equal density.
+  by_sections = distribution == nullptr && !part.shell() && follows <= Follows::section && part.shape().has_sections();
   points_apart =
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
 }
@@ -249,7 +251,13 @@ Material<double> on_ring(const AngleNode& u, const QuadratureNode& w, const Eige
   return {drop(u.c), drop(u.s), coordinate(p[0]), coordinate(p[1]), w.x};
 }
 
-/// Returns the masses of the points of a ring, for density 1.
+/// Returns the material point at nodes of u, v and w.
+Material<double> material_at(const RestShape& r, const AngleNode& u, const AngleNode& v,
+                             const QuadratureNode& w) {
+  return r.part.shape().from_rest_map({drop(u.c), drop(u.s), drop(v.c), drop(v.s), w.x}, r.a);
+}
+
+/// Returns the masses of the points of a ring, for Part::density() = 1.
 Eigen::VectorXd ring_masses(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
                             const std::vector<AngleNode>& v, const RingTangents& nodes) {
   const std::vector<Mat3<double>> F = r.part.chain_gradient(nodes.e, r.rest);
@@ -261,7 +269,10 @@ Eigen::VectorXd ring_masses(const RestShape& r, const AngleNode& u, const Quadra
         r.part.shell() ? deformed.col(0).cross(deformed.col(1)).norm() : std::abs(deformed.determinant());
     masses[static_cast<Eigen::Index>(k)] = measure * u.weight * v[k].weight * w.weight;
   }
-  return masses;
+  if (r.distribution == nullptr) return masses;
+  std::vector<Material<double>> points;
+  for (const AngleNode& at : v) points.push_back(material_at(r, u, at, w));
+  return masses.cwiseProduct(mass_multiples(r.part, *r.distribution, points));
 }
 
 /// Returns the coordinates (columns) in which displacements are affine along a ring: (C_v^eps, S_v^eps),
@@ -282,10 +293,8 @@ void add_points_apart(const RestShape& r, const AngleNode& u, const QuadratureNo
                       const std::vector<AngleNode>& v_nodes, const Eigen::VectorXd& masses,
                       std::vector<RestPoint>& out) {
   for (std::size_t k = 0; k < v_nodes.size(); ++k) {
-    const AngleNode& v = v_nodes[k];
     const double mass = masses[static_cast<Eigen::Index>(k)];
-    const Material<double> m =
-        r.part.shape().from_rest_map({drop(u.c), drop(u.s), drop(v.c), drop(v.s), w.x}, r.a);
+    const Material<double> m = material_at(r, u, v_nodes[k], w);
     if (r.octant)
       for (const MirrorSigns& signs : kImages) out.push_back({mirrored(m, signs), 2 * mass});
     else

@@ -22,9 +22,11 @@ struct RestPoint {
 
 /// A part at rest, and how its material points follow the dynamic parameters.
 struct RestShape {
-  explicit RestShape(const Part& whole);
+  /// distribution: the mass distribution of the points; nullptr if the density is the same everywhere.
+  explicit RestShape(const Part& whole, const MassDistribution* distribution = nullptr);
 
   const Part& part;
+  const MassDistribution* distribution;
   ParameterValues<double> rest;
   const double* a;  ///< parameters of the shape
   Follows follows;  ///< how material points follow the dynamic parameters, with the chain included

@@ -284,7 +284,7 @@ class RingSearch {
     whole_ring_ = v_;
     if (shape_.points_apart)
       thin(integrands_, along_v(v_), v_);
-    else if (!shape_.part.shell() && v_.size() > kSmallRing)
+    else if (!shape_.part.shell() && shape_.distribution == nullptr && v_.size() > kSmallRing)
       thin(RingMoments{*this}, Columns{{}, static_cast<Eigen::Index>(v_.size())}, v_);
   }
   void search_w(PlacedPoints& placed) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/math/eigenvalues.h>
+#include <pliant/math/scalar/formula_program.h>
 #include <pliant/part/local/local_deformation.h>
 #include <pliant/part/registry.h>
 
@@ -52,6 +53,8 @@ std::unique_ptr<Part> PartReader::read() {
                   "only a shell has a thickness; expected \"shell\": true, or no \"thickness\"");
   part_->damping(property("alpha"), property("beta"), property("drag"));
   if (r_.given("mass")) part_->mass(r_.number("mass"));
+  if (r_.text("mass_matrix") == "diagonal") part_->use_diagonal_mass();
+  if (r_.given("mass_distribution")) read_mass_distribution(r_.at("mass_distribution"));
 
   std::vector<std::string> in_matrix;
   const bool has_matrix = r_.given("stiffness_matrix");
@@ -86,6 +89,29 @@ double PartReader::property(const char* key) const {
     if (material != materials_.end()) return material->second.number(key);
   }
   return r_.number(key);
+}
+
+void PartReader::read_mass_distribution(const JsonValue& value) {
+  static const std::vector<std::string> names{"X", "Y", "Z", "u", "v", "w"};
+  auto number_of = [](const std::string& owner, const std::string& quantity) {
+    const auto found = quantity.empty() ? std::find(names.begin(), names.end(), owner) : names.end();
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  try {
+    const Formula formula(value.string(), number_of);
+    if (formula.reads_time()) return faults_.value(value, "expected a formula without t");
+    part_->distribute_mass([formula](const std::vector<Material<double>>& at, const Eigen::Matrix3Xd& X) {
+      Eigen::VectorXd multiples(X.cols());
+      for (Eigen::Index k = 0; k < X.cols(); ++k) {
+        const MaterialAngles m = angles(at[static_cast<std::size_t>(k)]);
+        const double x[] = {X(0, k), X(1, k), X(2, k), m.u, m.v, m.w};
+        multiples[k] = formula.value<double>(0.0, x);
+      }
+      return multiples;
+    });
+  } catch (const FormulaError& fault) {
+    faults_.value(value, fault.what());
+  }
 }
 
 /// Reads the elasticity of the part, or of its material if the part has none.

@@ -13,7 +13,7 @@ std::optional<StateFunction> StateReader::function(const JsonValue& value) const
     NamedPoints points;
     for (const Track& track : scene_.tracks) points.emplace(track.name, track.point);
     try {
-      StateFunction function = state_formula(scene_.body, value.string(), points);
+      StateFunction function = state_formula(scene_.body, value.string(), points, at_points_);
       if (function.reads_state()) return function;
     } catch (const std::runtime_error& fault) {  // FormulaError
       faults_.value(value, fault.what());

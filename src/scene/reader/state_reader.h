@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/actuation/state_function.h>
@@ -19,8 +20,9 @@ class StateReader {
  public:
   /// scene: its parts, joints, springs, tracks and sensors are the names that formulas may read; it must
   /// outlive the reader. Coordinates of joints that a formula reads are added to the MultiBody.
-  StateReader(Scene& scene, SceneFaults& faults)
-      : scene_(scene), times_(scene.end, faults), faults_(faults) {}
+  /// at_points: the quantities at a point that the formulas of a distributed force may read.
+  StateReader(Scene& scene, SceneFaults& faults, std::vector<std::string> at_points = {})
+      : scene_(scene), times_(scene.end, faults), faults_(faults), at_points_(std::move(at_points)) {}
 
   /// Returns the function that a validated value of type schema::state_function describes, or nothing if it
   /// is faulty; the fault is reported.
@@ -32,6 +34,7 @@ class StateReader {
   Scene& scene_;
   TimeReader times_;
   SceneFaults& faults_;
+  std::vector<std::string> at_points_;
 };
 
 }  // namespace pliant

@@ -152,6 +152,14 @@ Record part_record() {
                 "Thickness of a shell. The density is then per volume (kg/m^3)."),
        optional("local", record(local_record()), "Local deformation; when absent, there is none."),
        optional("mass", number(above(0), "kg"), "Total mass, instead of the density."),
+       optional("mass_matrix",
+                choice({{"consistent", "M of Eq. (11)"},
+                        {"diagonal", "only the diagonal of M, as in section 5 of the paper; for comparisons, "
+                                     "because energy is then not conserved"}}),
+                "Mass matrix from which accelerations follow.", "\"consistent\""),
+       optional("mass_distribution", text(1).expecting("a formula of X, Y, Z, u, v and w"),
+                "Formula that multiplies the density at each material point: of its place at rest in the frame "
+                "of the part, X, Y, Z (m), and of its coordinates u, v (rad) and w."),
        optional("inertia", record(inertia_record()), "Mass and inertia of a rigid part."),
        optional("position", vector3("m"), "Position of the origin of the body frame at time 0.", "[0, 0, 0]"),
        optional("orientation", orientation(), "Orientation of the body frame at time 0.",
@@ -242,6 +250,33 @@ Record torque_record() {
            optional("frame", frame_type(), "Axes of its components.", "\"world\"")}};
 }
 
+Record surface_force_record() {
+  return {"surface_force",
+          "A force per area on the present surface of a part, for example wind or buoyancy. Its formulas may "
+          "also read the point x, y, z, its velocity vx, vy, vz, the outward normal nx, ny, nz, and the place "
+          "of the point at rest in the frame of the part, X, Y, Z.",
+          {optional("name", name(), "Name in the outputs."),
+           required("part", name(), "Name of the part.", "\"wing\""),
+           optional("traction", state_vector("N/m^2"), "The force per area, along the world's axes.",
+                    "[0, 0, \"-2 * vz\"]"),
+           optional("pressure", state_function("Pa", unbounded()),
+                    "Pressure, whose force is along the inward normal.", "\"9810 * max(-z, 0)\""),
+           optional("resolution", integer(between(1, 512)),
+                    "Number of edges of triangles along an eighth of a circle; a part with \"local\" has the "
+                    "triangles of its mesh.",
+                    "6")}};
+}
+
+Record body_force_record() {
+  return {"body_force",
+          "A force per mass in a part. Its formulas may also read the point x, y, z, its velocity vx, vy, vz, "
+          "and the place of the point at rest in the frame of the part, X, Y, Z.",
+          {optional("name", name(), "Name in the outputs."),
+           required("part", name(), "Name of the part.", "\"ball\""),
+           required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
+                    "[\"-4 * x\", 0, 0]")}};
+}
+
 Record track_record() {
   return {"track",
           "A material point whose path is drawn and recorded.",
@@ -326,6 +361,8 @@ Record make_scene_record() {
        optional("springs", array(record(spring_record())), "Springs between parts or to the world.", "[]"),
        optional("forces", array(record(force_record())), "Forces at material points.", "[]"),
        optional("torques", array(record(torque_record())), "Torques on parts.", "[]"),
+       optional("surface_forces", array(record(surface_force_record())), "Forces per area on surfaces.", "[]"),
+       optional("body_forces", array(record(body_force_record())), "Forces per mass.", "[]"),
        optional("sensors", array(record(sensor_record())),
                 "Named quantities that are recorded and that formulas may read.", "[]"),
        optional("tracks", array(record(track_record())), "Material points whose paths are recorded.", "[]"),

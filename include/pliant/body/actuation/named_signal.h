@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <pliant/body/actuation/state_function.h>
 
@@ -29,7 +30,9 @@ std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, co
 
 /// Returns the function of a formula of t and of named quantities, for example "-20 * ball.z". Throws
 /// FormulaError (math/formula.h) for an error in the text or an unknown name, and std::invalid_argument for
-/// more than kMaxSignals quantities.
-StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {});
+/// more than kMaxSignals quantities. at_points: the quantities_at_points() of a distributed force; they come
+/// before sensors of the same name.
+StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {},
+                            const std::vector<std::string>& at_points = {});
 
 }  // namespace pliant

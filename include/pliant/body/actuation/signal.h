@@ -25,7 +25,8 @@ struct Signal {
     coordinate,        ///< row `index` of `coordinate`, rad or m
     coordinate_rate,   ///< its rate, per second
     sensor,            ///< the value of `sensor`
-    input              ///< input `index` of the state (State::inputs)
+    input,             ///< input `index` of the state (State::inputs)
+    at_point           ///< quantity `index` of quantities_at_points(), for distributed forces only
   };
   Kind kind = Kind::position;
   const Part* part = nullptr;

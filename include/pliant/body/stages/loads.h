@@ -1,7 +1,9 @@
-// Stage 3, loads: the forces of springs, the forces at points, the torques and the drives, with their powers.
+// Stage 3, loads: the forces of springs, the forces at points, the distributed forces, the torques and the
+// drives, with their powers.
 // Forces are gathered at the ports of the parts; part_stages.h turns them into f_q = L^T f, Eq. (11).
 #pragma once
 
+#include <pliant/body/distributed/force_at_points.h>
 #include <pliant/body/stages/evaluation.h>
 #include <pliant/body/stages/signals.h>
 
@@ -88,6 +90,7 @@ class LoadStage {
     for (const SpringModel& spring : model_.springs()) add(spring);
     for (const ForceModel& force : model_.forces()) add(force);
     for (const TorqueModel& torque : model_.torques()) add(torque);
+    for (const DistributedModel& force : model_.distributed_forces()) add(force);
     for (const DriveModel& drive : model_.drives()) add(drive);
   }
 
@@ -128,6 +131,14 @@ class LoadStage {
     if (m.against < 0) return;
     if (m.torque->frame == Frame::body) torque = (e_.part_work(m.part).R * torque).eval();
     turn(m.against, -torque, Frame::world);
+  }
+
+  void add(const DistributedModel& m) {
+    PartWorkspace<S>& w = e_.part_work(m.part);
+    for_each_force(e_, m, [&](int port, const Vec3<S>& force) {
+      w.port_force[static_cast<std::size_t>(port)] += force;
+      power(Work::forces) += force.dot(w.port_x_dot[static_cast<std::size_t>(port)]);
+    });
   }
 
   void add(const DriveModel& m) {

@@ -262,6 +262,11 @@ inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
     return;
   }
   if (m.rigid_mass != nullptr) return;
+  if (m.part->has_diagonal_mass()) {
+    MatX<double> diagonal = w.inertia.M.diagonal().asDiagonal();
+    if (w.stiffening > 0) diagonal.bottomRightCorner(m.n_s, m.n_s) += w.stiffening * m.part->K_s();
+    return w.factor.compute(diagonal, m.inertia_floor);
+  }
   if (w.stiffening > 0) w.inertia.M.bottomRightCorner(m.n_s, m.n_s) += w.stiffening * m.part->K_s();
   w.factor.compute(w.inertia.M, m.inertia_floor);
 }
@@ -352,7 +357,10 @@ void accelerate_freely(const Evaluation<S>& e, int i) {
       w.solve_mass(w.a_r);
     if (e.modes != nullptr && m.island < 0) apply_limits(e.model(), i, *e.modes, e.work);
   } else {
-    w.factor.compute(w.inertia.M, m.inertia_floor);
+    if (m.part->has_diagonal_mass())
+      w.factor.compute(MatX<S>(w.inertia.M.diagonal().asDiagonal()), m.inertia_floor);
+    else
+      w.factor.compute(w.inertia.M, m.inertia_floor);
     w.factor.solve(w.a_r);
     if (e.fixed_modes != nullptr && m.island < 0)
       keep_pushed_limits<S>(e.model(), i, e.fixed_modes->parts[static_cast<std::size_t>(i)].pressed, e.work);

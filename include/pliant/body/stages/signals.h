@@ -151,6 +151,8 @@ S signal_value(const Evaluation<S>& e, const SignalModel& m) {
       return value_of(e, e.model().sensors()[static_cast<std::size_t>(m.place)]);
     case Kind::input:
       return S(e.work.inputs[i]);
+    case Kind::at_point:
+      break;  // distributed/force_at_points.h has the values at points
   }
   return S(0.0);
 }

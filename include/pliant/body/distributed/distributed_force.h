@@ -1,0 +1,35 @@
+// Distributed forces f(u, t) of Eq. (11): forces per area on the surface of a part, and forces per mass in
+// its body. Their formulas may read the point at which they act.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pliant/body/actuation/state_function.h>
+
+namespace pliant {
+
+class Part;
+
+/// A force that acts on all points of a part.
+struct DistributedForce {
+  enum class Domain {
+    surface,  ///< per area of the present surface; only the outer side
+    body,     ///< per mass
+  };
+  std::string name;
+  const Part* part = nullptr;
+  Domain domain = Domain::surface;
+  StateVector density;     ///< N/m^2 on the surface, N/kg in the body; world
+  StateFunction pressure;  ///< N/m^2; its force is along the inward normal. Domain::surface only
+  /// Resolution of the triangles on the surface (part/mesh/surface.h) of a part without local deformation. A
+  /// part that deforms locally has the triangles of its mesh.
+  int resolution = 6;
+};
+
+/// Returns the names of the quantities at a point that the formulas of a distributed force may read, in the
+/// order of Signal::index: the point x, y, z (m, world), its velocity vx, vy, vz (m/s), its place at rest X,
+/// Y, Z (m, body frame) and, on a surface, the unit outward normal nx, ny, nz (world).
+const std::vector<std::string>& quantities_at_points(DistributedForce::Domain domain);
+
+}  // namespace pliant

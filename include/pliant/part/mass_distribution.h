@@ -1,0 +1,26 @@
+// The mass distribution mu(u) of Eq. (11) over the material points of a part.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <pliant/shape/material.h>
+
+namespace pliant {
+
+class Part;
+
+/// The mass density of material points, as a multiple of Part::density(). at: the material points. X: their
+/// places at rest, body frame, m, one column for each. The multiples must be finite and not negative. The
+/// mass points of a part are exact to rounding where the function is smooth on each panel of the shape.
+using MassDistribution =
+    std::function<Eigen::VectorXd(const std::vector<Material<double>>& at, const Eigen::Matrix3Xd& X)>;
+
+/// Returns the multiples at material points of a part at rest. Throws std::invalid_argument, with the name of
+/// the part and the point, if one of them is negative or not finite.
+Eigen::VectorXd mass_multiples(const Part& part, const MassDistribution& distribution,
+                               const std::vector<Material<double>>& at);
+
+}  // namespace pliant
