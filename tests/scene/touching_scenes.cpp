@@ -188,13 +188,25 @@ TEST_CASE("the springboard throws up the ball on its end, and all parts deform",
   CHECK(dent > 0.02);
 }
 
-TEST_CASE("the dragonfly flaps its wings, which bend, and the impact bends its body", "[contact][long]") {
+TEST_CASE(
+    "the dragonfly flaps its wings, which bend, and flies; the impact bends its body and dents its membrane",
+    "[contact][long]") {
   const std::vector<std::string> wings{"left_fore", "right_fore", "left_hind", "right_hind"};
   std::vector<Extent> flaps(wings.size()), bend_range(wings.size());
   Extent before_impact, after_impact;
-  double max_speed = 0;
+  double max_speed = 0, dent_before = 0, dent_after = 0;
+  Eigen::Vector3d take_off = Eigen::Vector3d::Zero(), before = take_off;
   run_scene("dragonfly", [&](Simulation& simulation) {
     const double t = simulation.time();
+    const Eigen::Vector3d place =
+        simulation.model().position(simulation.state(), number_of(simulation, "body"));
+    if (t < 5) take_off = place;
+    if (t < 8) before = place;
+    if (t > 5) {
+      double& largest = t < 8 ? dent_before : dent_after;
+      const Eigen::Index n_d = model_of(simulation, "body").n_d();
+      largest = std::max(largest, deformation(simulation, "body").tail(n_d).lpNorm<Eigen::Infinity>());
+    }
     if (t > 5 && t < 8) {
       before_impact.note(bend(simulation, "body"));
       for (std::size_t i = 0; i < wings.size(); ++i) {
@@ -215,7 +227,11 @@ TEST_CASE("the dragonfly flaps its wings, which bend, and the impact bends its b
     CHECK(flaps[i].width() > 0.5);
     CHECK(bend_range[i].width() > 0.2);
   }
-  CHECK(after_impact.largest > before_impact.largest + 0.2);
+  CHECK(before.z() > take_off.z() + 0.2);  // the air on its wings lifts the dragonfly and drives it ahead
+  CHECK(before.x() > take_off.x() + 0.2);
+  CHECK(std::abs(before.y()) < 0.3);  // the controller holds its course
+  CHECK(after_impact.largest > before_impact.largest + 0.1);
+  CHECK(dent_after > 2 * dent_before);
   CHECK(max_speed > 0.5);
 }
 
