@@ -134,7 +134,9 @@ void Model::add_part(Part& part, RigidMasses& known) {
   for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part.inertia_floor(k);
   if (part.rigid()) {
     std::shared_ptr<const RigidMass>& mass = known[&part.constants()];
-    if (!mass) mass = std::make_shared<const RigidMass>(part.rest_inertia(), m.inertia_floor, part.has_diagonal_mass());
+    if (!mass)
+      mass =
+          std::make_shared<const RigidMass>(part.rest_inertia(), m.inertia_floor, part.has_diagonal_mass());
     m.rigid_mass = mass;
   }
   parts_.push_back(std::move(m));

@@ -19,6 +19,12 @@ void SceneFaults::value(const JsonValue& at, const std::string& message) {
   add(at, document_.shown(at) + "; " + message, Severity::kError);
 }
 
+void SceneFaults::in_string(const JsonValue& string, std::size_t byte, const std::string& message) {
+  diagnostics_.add(diagnostics_.full()
+                       ? Diagnostic{}
+                       : document_.fault_in_string(string, byte, document_.shown(string) + "; " + message));
+}
+
 void SceneFaults::warn(const JsonValue& at, const std::string& message) {
   add(at, document_.shown(at) + "; " + message, Severity::kWarning);
 }

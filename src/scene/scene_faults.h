@@ -21,6 +21,8 @@ class SceneFaults {
 
   /// Adds an error at a value; the message begins with the value.
   void value(const JsonValue& at, const std::string& message);
+  /// Adds an error at a byte of the decoded text of a string; the message begins with the string.
+  void in_string(const JsonValue& string, std::size_t byte, const std::string& message);
   /// Adds a warning at a value; the message begins with the value.
   void warn(const JsonValue& at, const std::string& message);
   /// Adds an error at a value; the message does not contain the value. For objects and long arrays.

@@ -41,7 +41,8 @@ void busy_scene(MultiBody& body) {
   });
   const auto& on_surface = quantities_at_points(DistributedForce::Domain::surface);
   auto formula = [&](const char* text) { return state_formula(body, text, {}, on_surface); };
-  body.surface_force("wind", a, {formula("3 * (1 - vx) * abs(nz)"), formula("b.z - y"), formula("40 * X * x")},
+  body.surface_force("wind", a,
+                     {formula("3 * (1 - vx) * abs(nz)"), formula("b.z - y"), formula("40 * X * x")},
                      formula("200 * smoothstep(-2, 2, z) + 5 * b.vx"))
       .resolution = 2;
   body.body_force("field", b, {formula("-4 * x * y"), formula("2 * vz"), StateFunction(0.3)});

@@ -93,10 +93,11 @@ TEST_CASE("buoyancy is the weight of the displaced water, and a pressure does th
 }
 
 TEST_CASE("a drag of the surface of a box is exact, because its faces are flat", "[loads]") {
-  const Run run(
-      scene_of(R"json("shape": "box", "density": 100, "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.5},
+  const Run run(scene_of(
+      R"json("shape": "box", "density": 100, "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.5},
                                "velocity": [1, 2, 3], "angular_velocity": [0, 0, 2])json",
-               "surface_forces", R"json("traction": ["-4 * vx", "-4 * vy", "-4 * vz"])json"));
+      "surface_forces",
+      R"json("traction": ["-4 * vx", "-4 * vy", "-4 * vz"], "pressure": "3 * (vn - vx * nx - vy * ny - vz * nz)")json"));
   const double area = 8 * (0.3 * 0.2 + 0.2 * 0.5 + 0.3 * 0.5), mass = 100 * 8 * 0.3 * 0.2 * 0.5;
   const VecX<double> a = run.v_dot();
   for (int i = 0; i < 3; ++i) CHECK(a[i] == Approx(-4 * area * (i + 1) / mass).epsilon(1e-12));

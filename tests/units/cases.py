@@ -228,7 +228,7 @@ def actuation():
 
 def distributed_forces():
     """Surface and body forces, and a mass distribution."""
-    water = {"part": "a", "pressure": "9000 * max(0.1 - z, 0)", "traction": ["-30 * vx * abs(nz)", 0, "40 * X"],
+    water = {"part": "a", "pressure": "9000 * max(0.1 - z, 0)", "traction": ["-30 * vx * abs(nz)", 0, "40 * X - vn"],
              "resolution": 3}
     yield "distributed_forces", {
         "time": timed(),

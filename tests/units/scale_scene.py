@@ -24,8 +24,7 @@ OBJECTS = {
     "scene": {"name": KEEP, "description": KEEP, "gravity": "m/s^2", "time": "[time]", "parts": "[part]",
               "joints": "[joint]", "stabilization": "[stabilization]", "contact": "[contact]",
               "springs": "[spring]", "forces": "[force]", "torques": "[torque]", "surface_forces": "[surface_force]",
-              "body_forces": "[body_force]", "sensors": "[sensor]",
-              "output": "[output]"},
+              "body_forces": "[body_force]", "tracks": "[track]", "sensors": "[sensor]", "output": "[output]"},
     "time": {"end": "s", "step": "s", "integrator": KEEP, "tolerance": KEEP, "solver": KEEP},
     "part": {"name": KEEP, "shape": KEEP, "deformations": KEEP, "shell": KEEP, "thickness": "m", "local": "[local]",
              "mass": "kg", "mass_matrix": KEEP, "mass_distribution": "rad", "inertia": "[inertia]", "position": "m",
@@ -60,6 +59,7 @@ OBJECTS = {
     "spring": {"name": KEEP, "from": "[point]", "to": "[point]", "stiffness": "N/m", "damping": "N s/m",
                "rest_length": "m", "on": "s", "off": "s"},
     "force": {"name": KEEP, "part": KEEP, "at": "[place]", "force": "N", "frame": KEEP},
+    "track": {"name": KEEP, "part": KEEP, "at": "[place]"},
     "sensor": {"name": KEEP, "value": "rad"},  # the value keeps its old unit: its factor is that of an angle, 1
     "torque": {"name": KEEP, "part": KEEP, "against": KEEP, "torque": "N m", "frame": KEEP},
     "surface_force": {"name": KEEP, "part": KEEP, "traction": "Pa", "pressure": "Pa", "resolution": KEEP},
@@ -67,7 +67,7 @@ OBJECTS = {
     "output": {"frame_rate": "1/s"},
 }
 # Keys for pictures, which are left out.
-PICTURES = {"$schema", "//", "tracks", "coloring", "camera", "light", "ground", "color", "visible", "shown", "size",
+PICTURES = {"$schema", "//", "coloring", "camera", "light", "ground", "color", "visible", "shown", "size",
             "every_part", "contacts"}
 # What an entry of a list is instead, by its type.
 VARIANTS = {"slider": {"drive": "[sliding_drive]", "limits": "m"}}
@@ -76,7 +76,7 @@ SIGNALS = {**dict.fromkeys(["x", "y", "z", "length", "position"], "m"), "rate": 
            **dict.fromkeys(["vx", "vy", "vz"], "m/s"),
            **dict.fromkeys(["omega.x", "omega.y", "omega.z", "twist_rate", "swing_y_rate", "swing_z_rate"], "1/s")}
 # The quantities at the points of surface forces, body forces and mass distributions.
-AT_POINTS = {**dict.fromkeys(["x", "y", "z", "X", "Y", "Z"], "m"), **dict.fromkeys(["vx", "vy", "vz"], "m/s")}
+AT_POINTS = {**dict.fromkeys(["x", "y", "z", "X", "Y", "Z"], "m"), **dict.fromkeys(["vx", "vy", "vz", "vn"], "m/s")}
 SIGNAL = re.compile(r"[A-Za-z_][A-Za-z_0-9]*(?:\.[A-Za-z_][A-Za-z_0-9]*)*")
 # Values with a unit that a scene may leave out.
 DEFAULTS = {

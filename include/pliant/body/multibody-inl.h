@@ -66,9 +66,8 @@ PLIANT_INLINE Torque& MultiBody::torque(std::string name, const Part& part, Stat
 
 PLIANT_INLINE DistributedForce& MultiBody::surface_force(std::string name, const Part& part,
                                                          StateVector traction, StateFunction pressure) {
-  distributed_.push_back(std::make_unique<DistributedForce>(
-      DistributedForce{std::move(name), &part, DistributedForce::Domain::surface, std::move(traction),
-                       std::move(pressure)}));
+  distributed_.push_back(std::make_unique<DistributedForce>(DistributedForce{
+      std::move(name), &part, DistributedForce::Domain::surface, std::move(traction), std::move(pressure)}));
   return *distributed_.back();
 }
 

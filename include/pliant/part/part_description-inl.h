@@ -400,8 +400,9 @@ PLIANT_INLINE void PartDescription::check() const {
   if (diagonal_mass_ && local_settings_)
     refuse("a part that deforms locally has the coupled mass matrix; do not give it a diagonal one");
   if (mass_distribution_ && local_settings_ && local_settings_->basis != LocalSettings::Basis::nodes)
-    refuse("modes and polynomials have the same density everywhere; use the basis \"nodes\" with a mass "
-           "distribution");
+    refuse(
+        "modes and polynomials have the same density everywhere; use the basis \"nodes\" with a mass "
+        "distribution");
   if (fixed_ && local_settings_) refuse(without_coordinates + " does not deform locally");
   check_elasticity();
 }

@@ -14,9 +14,9 @@
 #include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
 #include <pliant/part/local/local_deformation.h>
-#include <pliant/part/mass_distribution.h>
 #include <pliant/part/parameters.h>
 #include <pliant/part/prescribed_motion.h>
+#include <pliant/part/quadrature/mass_distribution.h>
 
 namespace pliant {
 
@@ -78,8 +78,8 @@ class PartDescription {
   /// Sets the mass distribution mu(u), Eq. (11): density() times a function of the material point. Not with
   /// inertia(), nor with local deformation by modes or polynomials.
   Part& distribute_mass(MassDistribution distribution);
-  /// Makes accelerations follow from the diagonal of M, as section 5 of the paper does for speed: velocities of
-  /// different kinds are then not coupled by inertia. This saves no time here, and is for comparisons: the
+  /// Makes accelerations follow from the diagonal of M, as section 5 of the paper does for speed: velocities
+  /// of different kinds are then not coupled by inertia. This saves no time here, and is for comparisons: the
   /// energy, which has the whole of M, is not conserved. Not with local deformation.
   Part& use_diagonal_mass();
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre

@@ -72,8 +72,8 @@ class Simulation {
   /// digital controller if the caller advances by step(sampling time). Recordings do not contain the inputs.
   void set_controller(Controller controller) { controller_ = std::move(controller); }
 
-  /// Returns the values of the sensors at the state, in the order of MultiBody::sensors(); for controllers and
-  /// output.
+  /// Returns the values of the sensors at the state, in the order of MultiBody::sensors(); for controllers
+  /// and output.
   VecX<double> sensors();
 
   /// Returns energies, works, momenta and the balance error since the first state.

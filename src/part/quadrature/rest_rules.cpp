@@ -109,7 +109,8 @@ RestShape::RestShape(const Part& whole, const MassDistribution* mass_distributio
       dynamic_exponents(has_dynamic_exponent(whole)) {
   if (dynamic_exponents) find_kinks();
   // The moments of sections are closed forms for equal density.
-  by_sections = distribution == nullptr && !part.shell() && follows <= Follows::section && part.shape().has_sections();
+  by_sections =
+      distribution == nullptr && !part.shell() && follows <= Follows::section && part.shape().has_sections();
   points_apart =
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
 }

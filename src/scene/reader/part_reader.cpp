@@ -110,7 +110,7 @@ void PartReader::read_mass_distribution(const JsonValue& value) {
       return multiples;
     });
   } catch (const FormulaError& fault) {
-    faults_.value(value, fault.what());
+    faults_.in_string(value, fault.offset(), fault.reason());
   }
 }
 

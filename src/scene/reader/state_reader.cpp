@@ -15,8 +15,8 @@ std::optional<StateFunction> StateReader::function(const JsonValue& value) const
     try {
       StateFunction function = state_formula(scene_.body, value.string(), points, at_points_);
       if (function.reads_state()) return function;
-    } catch (const std::runtime_error& fault) {  // FormulaError
-      faults_.value(value, fault.what());
+    } catch (const FormulaError& fault) {
+      faults_.in_string(value, fault.offset(), fault.reason());
       return {};
     } catch (const std::invalid_argument& fault) {
       faults_.value(value, fault.what());

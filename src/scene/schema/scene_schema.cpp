@@ -154,12 +154,14 @@ Record part_record() {
        optional("mass", number(above(0), "kg"), "Total mass, instead of the density."),
        optional("mass_matrix",
                 choice({{"consistent", "M of Eq. (11)"},
-                        {"diagonal", "only the diagonal of M, as in section 5 of the paper; for comparisons, "
-                                     "because energy is then not conserved"}}),
+                        {"diagonal",
+                         "only the diagonal of M, as in section 5 of the paper; for comparisons, "
+                         "because energy is then not conserved"}}),
                 "Mass matrix from which accelerations follow.", "\"consistent\""),
-       optional("mass_distribution", text(1).expecting("a formula of X, Y, Z, u, v and w"),
-                "Formula that multiplies the density at each material point: of its place at rest in the frame "
-                "of the part, X, Y, Z (m), and of its coordinates u, v (rad) and w."),
+       optional(
+           "mass_distribution", text(1).expecting("a formula of X, Y, Z, u, v and w"),
+           "Formula that multiplies the density at each material point: of its place at rest in the frame "
+           "of the part, X, Y, Z (m), and of its coordinates u, v (rad) and w."),
        optional("inertia", record(inertia_record()), "Mass and inertia of a rigid part."),
        optional("position", vector3("m"), "Position of the origin of the body frame at time 0.", "[0, 0, 0]"),
        optional("orientation", orientation(), "Orientation of the body frame at time 0.",
@@ -253,8 +255,8 @@ Record torque_record() {
 Record surface_force_record() {
   return {"surface_force",
           "A force per area on the present surface of a part, for example wind or buoyancy. Its formulas may "
-          "also read the point x, y, z, its velocity vx, vy, vz, the outward normal nx, ny, nz, and the place "
-          "of the point at rest in the frame of the part, X, Y, Z.",
+          "also read the point x, y, z, its velocity vx, vy, vz, the outward normal nx, ny, nz, the velocity "
+          "along it, vn, and the place of the point at rest in the frame of the part, X, Y, Z.",
           {optional("name", name(), "Name in the outputs."),
            required("part", name(), "Name of the part.", "\"wing\""),
            optional("traction", state_vector("N/m^2"), "The force per area, along the world's axes.",
@@ -268,13 +270,14 @@ Record surface_force_record() {
 }
 
 Record body_force_record() {
-  return {"body_force",
-          "A force per mass in a part. Its formulas may also read the point x, y, z, its velocity vx, vy, vz, "
-          "and the place of the point at rest in the frame of the part, X, Y, Z.",
-          {optional("name", name(), "Name in the outputs."),
-           required("part", name(), "Name of the part.", "\"ball\""),
-           required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
-                    "[\"-4 * x\", 0, 0]")}};
+  return {
+      "body_force",
+      "A force per mass in a part. Its formulas may also read the point x, y, z, its velocity vx, vy, vz, "
+      "and the place of the point at rest in the frame of the part, X, Y, Z.",
+      {optional("name", name(), "Name in the outputs."),
+       required("part", name(), "Name of the part.", "\"ball\""),
+       required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
+                "[\"-4 * x\", 0, 0]")}};
 }
 
 Record track_record() {
@@ -361,7 +364,8 @@ Record make_scene_record() {
        optional("springs", array(record(spring_record())), "Springs between parts or to the world.", "[]"),
        optional("forces", array(record(force_record())), "Forces at material points.", "[]"),
        optional("torques", array(record(torque_record())), "Torques on parts.", "[]"),
-       optional("surface_forces", array(record(surface_force_record())), "Forces per area on surfaces.", "[]"),
+       optional("surface_forces", array(record(surface_force_record())), "Forces per area on surfaces.",
+                "[]"),
        optional("body_forces", array(record(body_force_record())), "Forces per mass.", "[]"),
        optional("sensors", array(record(sensor_record())),
                 "Named quantities that are recorded and that formulas may read.", "[]"),

@@ -74,7 +74,8 @@ void set_lane(M& packs, int lane, const Lane<M>& value) {
 PLIANT_INLINE bool RigidIsland::applies_to(const Model& model, const Island& island) {
   auto rigid = [&](int i) {
     const PartModel& m = model.parts()[at(i)];
-    return m.rigid_mass != nullptr && !m.part->has_diagonal_mass() && m.drag == 0 && !m.rigid_mass->factor.any_excluded();
+    return m.rigid_mass != nullptr && !m.part->has_diagonal_mass() && m.drag == 0 &&
+           !m.rigid_mass->factor.any_excluded();
   };
   std::vector<int> arms(island.parts.size(), 0);
   for (const int j : island.joints)

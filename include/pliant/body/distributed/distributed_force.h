@@ -29,7 +29,8 @@ struct DistributedForce {
 
 /// Returns the names of the quantities at a point that the formulas of a distributed force may read, in the
 /// order of Signal::index: the point x, y, z (m, world), its velocity vx, vy, vz (m/s), its place at rest X,
-/// Y, Z (m, body frame) and, on a surface, the unit outward normal nx, ny, nz (world).
+/// Y, Z (m, body frame) and, on a surface, the unit outward normal nx, ny, nz (world) and the velocity along
+/// it, vn (m/s).
 const std::vector<std::string>& quantities_at_points(DistributedForce::Domain domain);
 
 }  // namespace pliant

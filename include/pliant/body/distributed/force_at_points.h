@@ -9,12 +9,12 @@ namespace pliant::detail {
 
 /// Values at a point, in the order of quantities_at_points().
 template <class S>
-using QuantitiesAtPoint = std::array<S, 12>;
+using QuantitiesAtPoint = std::array<S, 13>;
 
 template <class S>
-QuantitiesAtPoint<S> quantities_at(const Vec3<S>& x, const Vec3<S>& x_dot, const Vec3<double>& X,
+QuantitiesAtPoint<S> quantities_at(const Vec3<S>& x, const Vec3<S>& v, const Vec3<double>& X,
                                    const Vec3<S>& n) {
-  return {x[0], x[1], x[2], x_dot[0], x_dot[1], x_dot[2], S(X[0]), S(X[1]), S(X[2]), n[0], n[1], n[2]};
+  return {x[0], x[1], x[2], v[0], v[1], v[2], S(X[0]), S(X[1]), S(X[2]), n[0], n[1], n[2], S(v.dot(n))};
 }
 
 /// A function of time, state and place, at many points. Quantities of the state are evaluated once.

@@ -1,4 +1,4 @@
-#include <pliant/part/mass_distribution.h>
+#include <pliant/part/quadrature/mass_distribution.h>
 
 #include <cmath>
 #include <sstream>
