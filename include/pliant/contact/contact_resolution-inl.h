@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include <pliant/body/advance.h>
 #include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/load_work.h>
@@ -54,6 +55,16 @@ inline constexpr double kSeparationTolerance = 0.03;
 /// Returns whether one of the sides of a contact is at nodes of a mesh.
 inline bool is_at_nodes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
+}
+
+/// Returns a state in which the impulses of a solved problem have acted for `time` seconds at all contacts.
+/// state: that before the impulses. The displacements of the problem become `time` times the changes of
+/// velocity.
+inline State displaced_evenly(ContactProblem& problem, const Model& model, const Workspace<double>& work,
+                              double time, State state) {
+  problem.bound_shifts(time, 0);
+  apply_solution(problem, model, work, state);
+  return state;
 }
 
 /// Returns the index in [first, last) of the position nearest to x, nearer than `within` (m) and not taken;
@@ -272,27 +283,46 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   ContactProblem problem(dynamics_.model(), state, step.work, contacts, &before);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
-  // follows a prescribed path, or if the impulse acts at one instant. Then Work::contact, or Work::anchors
-  // for a prescribed path, is corrected: the works of this resolution add up to the change of the energy of
-  // the touched parts.
-  const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state;
-  const bool by_energy =
-      driven || instant || state.at_limit != before.at_limit || state.joints != before.joints;
-  const double energy = by_energy ? dynamics_.energy(t, state.q, state.v, parts, scratch_) : 0;
+  // follows a prescribed path, or if the impulse acts at one instant. At nodes of a mesh it is not exact
+  // either, because elastic forces are not constant. Then Work::contact, or Work::anchors for a prescribed
+  // path, is corrected: the works of this resolution add up to the change of the energy of the touched parts.
+  const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state,
+             at_nodes = std::any_of(contacts.begin(), contacts.end(), contact_resolution::is_at_nodes);
+  const bool by_energy = driven || instant || state.at_limit != before.at_limit ||
+                         state.joints != before.joints || (at_nodes && motion.force_time < h);
+  // Methods with a reach of 1 conserve the energy at the positions half a step earlier, and the work of
+  // solve() is that of impulses which displace for the whole step (README.md). At nodes, Work::contact gets
+  // the change of this energy from the state with these displacements to the actual one.
+  const bool by_displacement = at_nodes && !by_energy;
+  const auto balance_of = [&](const State& at_end) {
+    VecX<double> q = at_end.q;
+    for (std::size_t i = 0; by_displacement && i < parts.size(); ++i)
+      advance_whole_part(dynamics_.model().parts()[at(parts[i])], q, at_end.v, 0.5 * h - motion.force_time);
+    return dynamics_.energy(t, q, at_end.v, parts, scratch_) - at_end.work.sum();
+  };
   LoadWork loads(dynamics_, state);
+  double balance = by_energy ? dynamics_.energy(t, state.q, state.v, parts, scratch_) - work_before : 0;
+  State reference;
+  if (by_displacement) reference = state;
   q_before_ejection_ = state.q;
   apply_solution(problem, dynamics_.model(), step.work, state);
+  if (by_displacement) {
+    reference = contact_resolution::displaced_evenly(problem, dynamics_.model(), step.work, motion.force_time,
+                                                     std::move(reference));
+    balance = balance_of(reference);
+    state.work[static_cast<int>(Work::forces)] -= loads.work_until(t, reference);
+  }
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // The work of forces during the displacement by the impulses is added. Motions of methods with a reach of 1
-  // (FreeMotion::reach) are an exception. These methods compute the work of forces from the velocities at the
-  // start of the motion. This work is already zero for a resting part.
-  if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
+  // The work of forces during the displacement by the impulses is added. Methods with a reach of 1
+  // (FreeMotion::reach) compute the work of forces from the velocities at the start of the motion. This work
+  // is already zero for a resting part, and includes displacements for h seconds.
+  if (motion.force_time < h || by_displacement)
+    state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (h > 0 && motion.separates) separate_overlaps(step);
   project_limits(step);
-  if (by_energy)
-    state.work[static_cast<int>(driven ? Work::anchors : Work::contact)] +=
-        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
+  if (by_energy || by_displacement)
+    state.work[static_cast<int>(driven ? Work::anchors : Work::contact)] += balance_of(state) - balance;
   append_to_record(contacts, solution);
   if (motion.separates) travel_.clear();
 }

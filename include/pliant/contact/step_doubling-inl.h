@@ -130,8 +130,14 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   if (agreed && !whole.has_event && error <= 1) {
     StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
                        halves.length);
-    extrapolate(at_end, whole.state, {whole.state, 1}, halves.first_contacts,
-                parts_touched(model, record_.contacts));
+    const std::vector<int> parts = parts_touched(model, record_.contacts);
+    const auto balance_of = [&](const State& at) {
+      return dynamics_.energy(at_end.t, at.q, at.v, parts, scratch_) - at.work.sum();
+    };
+    const double balance = 2 * balance_of(state) - balance_of(whole.state);
+    extrapolate(at_end, whole.state, {whole.state, 1}, halves.first_contacts, parts);
+    // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
+    state.work[static_cast<int>(Work::contact)] += balance_of(state) - balance;
   }
   return {error, order, halves.length};
 }
@@ -269,31 +275,27 @@ PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec
 
 /// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
 /// end of the whole step. from: what extrapolated() gets. second: number of the first contact of the second
-/// half in the record.
+/// half in the record. Works are extrapolated, too. Energies are not linear in the coordinates and
+/// velocities, so that the energy changes by more than the works.
 PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole,
                                                 const Extrapolation& from, std::size_t second,
                                                 const std::vector<int>& parts) {
   const Model& model = dynamics_.model();
   State& state = step.state;
-  auto energy_of = [&](const State& at_end) {
-    return dynamics_.energy(step.t, at_end.q, at_end.v, parts, scratch_);
+  auto momenta_of = [&](const State& at_end) {
+    dynamics_.evaluate_masses(at_end.q, at_end.v, parts, scratch_);
+    return step_doubling::local_momenta(model, parts, scratch_);
   };
-  const double of_whole = energy_of(whole);
-  const std::vector<Vec3<double>> momenta_of_whole = step_doubling::local_momenta(model, parts, scratch_);
-  const double energy = (1 + from.share) * energy_of(state) - from.share * of_whole;
-  std::vector<Vec3<double>> momenta = step_doubling::local_momenta(model, parts, scratch_);
-  for (std::size_t i = 0; i < momenta.size(); ++i)
-    momenta[i] += from.share * (momenta[i] - momenta_of_whole[i]);
+  const std::vector<Vec3<double>> of_whole = momenta_of(whole);
+  std::vector<Vec3<double>> momenta = momenta_of(state);
+  for (std::size_t i = 0; i < momenta.size(); ++i) momenta[i] += from.share * (momenta[i] - of_whole[i]);
   state = extrapolated(state, from, parts);
   state.work += from.share * (state.work - whole.work);
-  const double work_before = state.work.sum();
   project_frames(step, parts);
   keep_momenta(step.t, momenta, parts, state);
   project_joints(step);
   project_limits(step);
   include_openings(second, step.t, step.h, state);
-  // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
-  state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - work_before);
 }
 
 }  // namespace pliant
