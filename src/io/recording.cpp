@@ -6,12 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <pliant/body/advance.h>
-#include <pliant/body/dynamics.h>
 #include <pliant/io/layout.h>
+#include <pliant/io/recorded_step.h>
 #include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
-#include <pliant/method/step_path.h>
 
 #include "step_between.h"
 
@@ -220,110 +218,23 @@ RunWork Recording::work(std::int64_t row) const {
   return read_work_row(read_row(work_, row).data());
 }
 
-namespace {
-
-/// An impact is assumed at the end of a step if the rates jump there by more than this fraction of their
-/// change due to the accelerations.
-constexpr double kJump = 0.5;
-/// Other forces, such as contact, are assumed within a step if two predictions fail: that of the displacement
-/// from the rate and the acceleration at the start, and that of the rate at the end from the mean of both
-/// accelerations. A prediction fails if its error (times 2 / h for the displacement) is more than this
-/// fraction of the change of the rates due to the accelerations.
-constexpr double kPushed = 0.2;
-/// Relative rounding error of rates.
-constexpr double kRounding = 1e-9;
-
-/// Returns q at a fraction x of the step from the state `low` to the state `high`; quaternions are not
-/// normalised. Each block of coordinates is interpolated by a polynomial of degree 5 through q, its rates and
-/// its second derivatives at both states. If there is an impact at the end, the rate and the second
-/// derivative there are not used. If other forces acted within the step, the polynomial is the cubic Hermite
-/// one.
-VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
-  const Dynamics dynamics(model);
-  Workspace<double> work;
-  struct Motion {
-    VecX<double> rate, curvature;
-  };
-  auto motion_at = [&](const State& state) {
-    Motion motion;
-    dynamics.accelerations(state.time(), state.q, state.v, state, work);
-    dynamics.coordinate_rates(state.q, state.v, motion.rate);
-    dynamics.coordinate_rates(state.q, work.v_dot, motion.curvature);
-    VecX<double> turning;
-    dynamics.coordinate_rates(motion.rate, state.v, turning);
-    for (const PartModel& part : model.parts())
-      if (part.q0 >= 0) motion.curvature.segment<4>(part.q0 + 3) += turning.segment<4>(part.q0 + 3);
-    return motion;
-  };
-  const Motion a = motion_at(low), b = motion_at(high);
-  const double h = high.time() - low.time(), y = 1 - x, x3 = x * x * x, y3 = y * y * y;
-  VecX<double> q(low.q.size());
-  auto fill = [&](int first, int count) {
-    auto of = [&](auto& all) { return all.segment(first, count); };
-    // The displacement minus the displacement due to the rate and the acceleration at the start.
-    const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
-    const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
-    const double pushed =
-        std::min(2 / h * rest.norm(),
-                 (of(b.rate) - of(a.rate) - 0.5 * h * (of(a.curvature) + of(b.curvature))).norm());
-    const double rounding = kRounding * std::max(of(a.rate).norm(), of(b.rate).norm());
-    if (pushed > kPushed * h * bend + rounding) {
-      VecX<double> cubic;
-      StepPolynomial{of(low.q), hermite_terms(of(low.q), of(a.rate), h, of(high.q), of(b.rate))}.at(x, cubic);
-      of(q) = cubic;
-      return;
-    }
-    const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
-    if (jump > kJump * h * bend) {  // impact at the end: b.rate is the rate after the impact
-      of(q) = of(low.q) + x * h * of(a.rate) + 0.5 * x * x * h * h * of(a.curvature) + x3 * rest;
-      return;
-    }
-    of(q) = y3 * (1 + 3 * x + 6 * x * x) * of(low.q) + x3 * (1 + 3 * y + 6 * y * y) * of(high.q) +
-            h * (x * y3 * (1 + 3 * x) * of(a.rate) - y * x3 * (1 + 3 * y) * of(b.rate)) +
-            0.5 * h * h * (x * x * y3 * of(a.curvature) + y * y * x3 * of(b.curvature));
-  };
-  for (const PartModel& part : model.parts()) {
-    if (part.q0 < 0) continue;
-    fill(part.q0, 3);
-    fill(part.q0 + 3, 4);
-    for (int k = 0; k < part.n_s; ++k) fill(part.q0 + 7 + k, 1);
-    if (part.n_d() > 0) fill(part.q0 + 7 + part.n_s, part.n_d());
-  }
-  return q;
-}
-
-}  // namespace
-
 State Recording::at(double t) const {
   if (times_.empty()) throw std::out_of_range("the recording contains no state");
   const auto next = std::lower_bound(times_.begin(), times_.end(), t);
   const std::int64_t after = next - times_.begin();
   if (after == rows()) return state(rows() - 1);
   if (after == 0) return state(0);
-  State low = state(after - 1);
-  const State high = state(after);
+  const State low = state(after - 1), high = state(after);
   // A frame at the time of a recorded state shows this state, also if the two times differ by rounding.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;
-  const double x = (t - low.time()) / span;
-  const bool long_step = high.error > 0;
-  if (long_step)
-    if (std::optional<State> there = step_between(*model_, low, high, x, quintic(*model_, low, high, 0.5)))
+  const RecordedStep step(*model_, low, high);
+  if (step.is_long())
+    if (std::optional<State> there =
+            step_between(*model_, low, high, (t - low.time()) / span, step.at(low.time() + 0.5 * span).q))
       return *there;
-  VecX<double> q;
-  if (long_step) {
-    q = quintic(*model_, low, high, x);
-    normalise_rotations(*model_, q);
-  } else {
-    StepPath(Dynamics(*model_), low, span, high).at(x, q);
-  }
-  low.q.swap(q);
-  low.v = (1 - x) * low.v + x * high.v;
-  low.work = (1 - x) * low.work + x * high.work;
-  low.start = t;
-  low.step = 0;
-  return low;
+  return step.at(t);
 }
 
 }  // namespace pliant

@@ -13,19 +13,9 @@ namespace pliant {
 Film::Film(const Scene& scene, const Model& model, const Recording& recording)
     : scene_(&scene), recording_(&recording), shown_(scene, model) {
   if (recording.rows() == 0) throw std::out_of_range("cannot draw the run: the recording has no state");
-  build_tracks(model);
+  tracks_ = track_lines(scene.tracks, model, recording);
   choose_view();
   choose_scale();
-}
-
-void Film::build_tracks(const Model& model) {
-  for (const Track& track : scene_->tracks) tracked_.emplace_back(model, track.point);
-  tracks_.resize(tracked_.size());
-  if (tracks_.empty()) return;
-  for (std::int64_t row = 0; row < recording_->rows(); ++row) {
-    const State state = recording_->state(row);
-    for (std::size_t i = 0; i < tracks_.size(); ++i) tracks_[i].push_back(tracked_[i].at(state));
-  }
 }
 
 void Film::choose_view() {
@@ -33,8 +23,8 @@ void Film::choose_view() {
   for (std::int64_t row = 0; row < recording_->rows(); ++row)
     bodies.extend(shown_.bounds(recording_->state(row)));
   Eigen::AlignedBox3d all = bodies;
-  for (const auto& track : tracks_)
-    for (const Eigen::Vector3d& x : track) all.extend(x);
+  for (const TrackLine& track : tracks_)
+    for (const Eigen::Vector3d& x : track.points()) all.extend(x);
   for (std::int64_t row = 0; row < recording_->rows(); ++row)
     shown_.extend_to_anchors(recording_->time(row), bodies, all);
   shown_.set_view(bodies, all, static_cast<double>(scene_->width) / scene_->height);
@@ -55,16 +45,8 @@ void Film::choose_scale() {
 const Picture& Film::at(double time) {
   const State state = recording_->at(time);
   shown_.set(state);
-  std::int64_t rows = 0;  // number of states recorded before this time
-  while (rows < recording_->rows() && recording_->time(rows) < state.time()) ++rows;
   std::vector<Picture::Track> tracks;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    Picture::Track track;
-    track.points.assign(tracks_[i].begin(), tracks_[i].begin() + rows);
-    track.points.push_back(tracked_[i].at(state));
-    track.color = picture_color(scene_->tracks[i].color);
-    tracks.push_back(std::move(track));
-  }
+  for (const TrackLine& track : tracks_) tracks.push_back(track.until(state));
   Picture& picture = shown_.picture();
   picture.tracks.insert(picture.tracks.begin(), std::make_move_iterator(tracks.begin()),
                         std::make_move_iterator(tracks.end()));

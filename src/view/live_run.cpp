@@ -144,6 +144,22 @@ std::shared_ptr<const Snapshot> LiveRun::snapshot() const {
   return snapshot_;
 }
 
+std::vector<TrackSample> LiveRun::take_track_samples() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(track_samples_, {});
+}
+
+/// Samples the tracks, unless the time is that of the last sample.
+void LiveRun::sample_tracks() {
+  const Simulation& simulation = simulation_.simulation();
+  if (simulation_.scene().tracks.empty() || simulation.time() == sampled_time_) return;
+  TrackSample sample{sampled_time_ = simulation.time(), {}};
+  for (const Track& track : simulation_.scene().tracks)
+    sample.points.push_back(PlacedPoint(simulation.model(), track.point).at(simulation.state()));
+  const std::lock_guard lock(mutex_);
+  track_samples_.push_back(std::move(sample));
+}
+
 /// Waits for a command or an interval to compute. Returns false when the object is destroyed.
 bool LiveRun::wait_for_work(std::vector<Command>& commands) {
   std::unique_lock lock(mutex_);
@@ -194,6 +210,7 @@ void LiveRun::advance() {
 }
 
 void LiveRun::publish() {
+  sample_tracks();
   const auto next = std::make_shared<Snapshot>();
   next->state = simulation_.simulation().state();
   next->ledger = ledger_;

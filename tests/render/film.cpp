@@ -53,7 +53,7 @@ TEST_CASE("camera and ground do not move, and show the whole motion") {
     // One tracked point, the lines of three springs, the dot at the world end of one spring, and the line and
     // the dot (world end) of a string.
     REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
-    CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
+    CHECK((k > 0) == (picture.tracks[0].points.size() > 1));
     // Every vertex is inside the picture.
     const Eigen::Vector3d back = (camera.eye - camera.target).normalized();
     const Eigen::Vector3d right = camera.up.cross(back).normalized(), up = back.cross(right);

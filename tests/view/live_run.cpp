@@ -52,6 +52,31 @@ TEST_CASE("a live run plays, pauses, makes single steps and resets") {
   wait_until(run, [](const Snapshot& now) { return now.state.time() == 0; });
 }
 
+TEST_CASE("a live run samples its tracks at the end of every interval, and again after a reset") {
+  Diagnostics diagnostics;
+  const std::unique_ptr<Scene> scene =
+      parse_scene("scene", R"({"gravity": [0, 0, -1], "time": {"step": 0.001, "integrator": "rk4"},
+    "parts": [{"name": "ball", "shape": "sphere"}],
+    "tracks": [{"part": "ball", "at": {"u": 0, "v": 0, "w": 0}}]})",
+                  {}, diagnostics);
+  LiveRun run(*scene);
+  for (int i = 0; i < 3; ++i) run.step_once();
+  wait_until(run, [](const Snapshot& now) { return now.state.time() > 0.05; });
+  const std::vector<TrackSample> samples = run.take_track_samples();
+  REQUIRE(samples.size() == 4);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    CHECK(samples[i].time == Approx(0.017 * static_cast<double>(i)));
+    REQUIRE(samples[i].points.size() == 1);
+    CHECK(samples[i].points[0].z() == Approx(-0.5 * samples[i].time * samples[i].time).margin(1e-12));
+  }
+  CHECK(run.take_track_samples().empty());
+  run.reset();
+  wait_until(run, [](const Snapshot& now) { return now.state.time() == 0; });
+  const std::vector<TrackSample> again = run.take_track_samples();
+  REQUIRE(again.size() == 1);
+  CHECK(again[0].time == 0);
+}
+
 TEST_CASE("a live run keeps real time, or is as fast as it can") {
   const std::unique_ptr<Scene> scene = ball_scene();
   LiveRun run(*scene);

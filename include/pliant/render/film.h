@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <vector>
 
-#include <pliant/body/placed_point.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run/progress.h>
 #include <pliant/render/picture.h>
 #include <pliant/render/renderer.h>
 #include <pliant/render/state_picture.h>
+#include <pliant/render/track_lines.h>
 #include <pliant/scene/scene.h>
 
 namespace pliant {
@@ -31,15 +31,13 @@ class Film {
   StatePicture& shown() { return shown_; }
 
  private:
-  void build_tracks(const Model& model);
   void choose_view();
   void choose_scale();
 
   const Scene* scene_;
   const Recording* recording_;
   StatePicture shown_;
-  std::vector<PlacedPoint> tracked_;
-  std::vector<std::vector<Eigen::Vector3d>> tracks_;  // for each track, its point at every recorded state
+  std::vector<TrackLine> tracks_;
 };
 
 /// A recorded motion with the scene and the model that it belongs to.

@@ -35,6 +35,12 @@ struct Snapshot {
   std::string refusal;  ///< message of the last command, if it failed
 };
 
+/// The positions of the tracked points at the end of an interval.
+struct TrackSample {
+  double time;                       ///< s
+  std::vector<Vec3<double>> points;  ///< in the order of Scene::tracks, m, world
+};
+
 class LiveRun {
  public:
   /// Prepares the simulation on the calling thread (LiveSimulation), and starts the thread, paused at time 0.
@@ -61,6 +67,9 @@ class LiveRun {
 
   /// Returns the last snapshot. It does not change.
   std::shared_ptr<const Snapshot> snapshot() const;
+  /// Returns the samples of the tracks at time 0 and at the ends of all intervals since the last call, in
+  /// their order. A time that is not later than the one before follows a reset.
+  std::vector<TrackSample> take_track_samples();
   /// Performs a command before the next interval and waits for it. Throws what the command throws.
   void wait_for(Command command);
 
@@ -70,6 +79,7 @@ class LiveRun {
   void perform(std::vector<Command>& commands);
   void advance();
   void publish();
+  void sample_tracks();
   void keep_pace();
 
   LiveSimulation simulation_;
@@ -78,6 +88,7 @@ class LiveRun {
   // Guarded by mutex_:
   std::vector<Command> commands_;
   std::shared_ptr<const Snapshot> snapshot_;
+  std::vector<TrackSample> track_samples_;
   bool running_ = false, quits_ = false;
   int single_steps_ = 0;
   double max_speed_ = 1;
@@ -85,6 +96,7 @@ class LiveRun {
   class Clock;
   std::unique_ptr<Clock> clock_;
   std::string failure_, refusal_;
+  double sampled_time_ = -1;  // of the last sample of the tracks, s
   Ledger ledger_;
   ShownForces shown_;
   std::thread thread_;

@@ -216,10 +216,14 @@ Run::Continuation Run::find_continuation(const Recording& recorded) {
     throw RecordingMismatch("cannot resume this run: it has reached t = " + number_text(last.time()) +
                             " s, beyond the requested end of " + number_text(scene_->end) + " s");
   // An uninterrupted run does not record a state that was recorded only because the run ended there.
-  const bool in_unbroken =
+  bool in_unbroken =
       scene_->tolerance > 0
           ? schedule_.records(from.keep > 1 ? recorded.time(from.keep - 2) : 0, last.time(), last.h)
           : schedule_.records(last.step);
+  if (!in_unbroken && from.keep > 1) {
+    track_sampling_->note(recorded.state(from.keep - 2));
+    in_unbroken = track_sampling_->has_moved(last);
+  }
   if (!in_unbroken) --from.keep;
   from.state = std::move(last);
   return from;
@@ -233,8 +237,7 @@ void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
   progress_->begin("read", static_cast<double>(states), "states");
   for (std::int64_t row = 0; row < states; ++row) {
     simulation_->set_state(recorded.state(row));
-    last_recorded_ = simulation_->state();
-    recorded_time_ = simulation_->time();
+    note_recorded();
     const Ledger ledger = simulation_->ledger();
     energies_->add(ledger, recorded_time_);
     observe_state(ledger);

@@ -59,7 +59,7 @@ class Trials {
   bool over() const { return Clock::now() > deadline_ || (stop_ && stop_()); }
 
   /// Performs a trial. It has the steps of a run, and examines the energies of the states that the run would
-  /// record.
+  /// record for its frames.
   Result result(const Trial& trial) const {
     try {
       Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance,

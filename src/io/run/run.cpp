@@ -77,6 +77,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_);
   energies_.emplace(simulation_->model());
+  track_sampling_.emplace(simulation_->model(), scene.tracks);
   const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
   set_identity();
@@ -281,12 +282,18 @@ std::string Run::remedy(double elapsed) const {
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
   const Ledger ledger = checked_ledger();
-  last_recorded_ = simulation_->state();
-  recorded_time_ = simulation_->time();
+  note_recorded();
   count_work();
   writer_->append(simulation_->state(), record_.work);
   if (contacts_) contacts_->append(*simulation_);
   observe_state(ledger);
+}
+
+/// Notes that the present state is the last recorded one.
+void Run::note_recorded() {
+  last_recorded_ = simulation_->state();
+  recorded_time_ = simulation_->time();
+  track_sampling_->note(last_recorded_);
 }
 
 /// Includes a recorded state, at which the simulation is, in the largest and final values of run.json, and
@@ -400,7 +407,8 @@ void Run::step_to_end() {
       stopped_ = true;
       break;
     }
-    const bool records = scheduled_step(*simulation_, schedule_);
+    const bool records =
+        scheduled_step(*simulation_, schedule_) || track_sampling_->has_moved(simulation_->state());
     note_slow_progress();
     progress_->advance(simulation_->time() - first_time);
     if (records) record_state();

@@ -22,8 +22,9 @@ const Eigen::Vector3f kContactColor(0.1f, 0.55f, 0.2f), kJointColor(0.15f, 0.3f,
     kLoadColor(0.75f, 0.45f, 0.05f);
 constexpr float kDragWidth = 2.5f, kTargetWidth = 8, kForceWidth = 2, kForceDotWidth = 5;  // pixels
 constexpr float kSliderWidth = 130;                                                        // pixels
-constexpr double kFarther = 1.5;        // distance of the automatic camera, in distances that show time 0
-constexpr double kLongestForce = 0.25;  // length of the line of the largest force, in sizes of the scene
+constexpr double kFarther = 1.5;           // distance of the automatic camera, in distances that show time 0
+constexpr double kTrackResolution = 1e-3;  // distance between two points of a track, in sizes of the scene
+constexpr double kLongestForce = 0.25;     // length of the line of the largest force, in sizes of the scene
 
 /// Returns the number of threads for the simulation: one processor is left to the window.
 int threads_of(Scene& scene, int asked) {
@@ -60,6 +61,7 @@ bool LiveMotion::refresh() {
   plays_ = newest->running;
   if (newest == snapshot_) return false;
   snapshot_ = std::move(newest);
+  extend_tracks();
   show_again();
   return true;
 }
@@ -70,10 +72,23 @@ void LiveMotion::show_again() {
     highest_ = std::max(highest_, shown_.meshes().high_value(snapshot_->state).value_or(0));
     shown_.set_scale(highest_);
   }
+  for (const TrackLine& track : tracks_) shown_.picture().tracks.push_back(track.until(snapshot_->state));
   add_forces(snapshot_->contacts, kContactColor);
   add_forces(snapshot_->joints, kJointColor);
   add_forces(snapshot_->loads, kLoadColor);
   add_drag_line();
+}
+
+/// Extends the lines of the tracks to the newest state. After a reset they start again.
+void LiveMotion::extend_tracks() {
+  for (const TrackSample& sample : run_.take_track_samples()) {
+    if (!(sample.time > track_time_)) tracks_.clear();
+    track_time_ = sample.time;
+    if (tracks_.empty())
+      for (const Track& track : scene_->tracks) tracks_.emplace_back(model_, track);
+    for (std::size_t i = 0; i < tracks_.size(); ++i)
+      tracks_[i].append(sample.time, sample.points[i], kTrackResolution * size_);
+  }
 }
 
 void LiveMotion::show_forces(const ShownForces& shown) {

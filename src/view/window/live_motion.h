@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include <pliant/render/track_lines.h>
 #include <pliant/view/live_run.h>
 #include <pliant/view/viewer.h>
 
@@ -35,6 +36,7 @@ class LiveMotion final : public Motion {
   void add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width);
   void show_forces(const ShownForces& shown);
   void add_drag_line();
+  void extend_tracks();
   void add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color);
   void add_rest_values(const std::string& part);
 
@@ -45,6 +47,8 @@ class LiveMotion final : public Motion {
   Model model_;  // of the picture; the simulation has its own, which changes with every drag
   SurfacePoints points_;
   StatePicture shown_;
+  std::vector<TrackLine> tracks_;
+  double track_time_ = -1;  // of the last point of the tracks, s
   std::shared_ptr<const Snapshot> snapshot_;
   bool plays_ = false, fast_ = false, gravity_is_free_;
   Vec3<double> first_gravity_;            // m/s^2

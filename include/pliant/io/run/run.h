@@ -18,6 +18,7 @@
 #include <pliant/io/run/progress.h>
 #include <pliant/io/run/run_folder.h>
 #include <pliant/io/run/run_record.h>
+#include <pliant/io/track_sampling.h>
 #include <pliant/scene/scene.h>
 #include <pliant/simulate/energy_monitor.h>
 #include <pliant/simulate/stable_step.h>
@@ -104,6 +105,7 @@ class Run {
   void describe(const StableStep& stable);
   void note_setup(const StableStep& stable);
   void record_state();
+  void note_recorded();
   void observe_state(const Ledger& ledger);
   Ledger checked_ledger();
   void record_last_valid_state();
@@ -148,7 +150,8 @@ class Run {
   RunRecord record_;
   std::optional<EnergyMonitor> energies_;  // set by the constructor
   State last_recorded_;
-  double recorded_time_ = -1;  // time of the last recorded state, s
+  std::optional<TrackSampling> track_sampling_;  // set by the constructor
+  double recorded_time_ = -1;                    // time of the last recorded state, s
   // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
   // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.
   std::size_t reported_impulses_ = 0;
