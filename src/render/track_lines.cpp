@@ -34,19 +34,31 @@ std::vector<double> resolutions(const std::vector<TrackLine>& lines, const Recor
   return resolution;
 }
 
-/// Returns the number of pieces of the line between two recorded states for which each piece is bent by at
+/// Returns the number of pieces of the lines between two recorded states for which each piece is bent by at
 /// most the resolution. The bend of a piece is proportional to the square of its length. low, high: positions
 /// at the two states.
-int pieces(const std::vector<TrackLine>& lines, const std::vector<double>& resolution,
-           const RecordedStep& step, double start, double end, const Positions& low, const Positions& high) {
+int count_pieces(const std::vector<TrackLine>& lines, const std::vector<double>& resolution,
+                 const RecordedStep& step, const Positions& low, const Positions& high) {
   double bends = 0;  // largest bend / resolution
   for (const double part : kProbes) {
-    const Positions x = positions(lines, step.at(start + part * (end - start)));
+    const Positions x = positions(lines, step.at(step.start() + part * (step.end() - step.start())));
     for (std::size_t i = 0; i < lines.size(); ++i)
       if (resolution[i] > 0)
         bends = std::max(bends, (x[i] - (1 - part) * low[i] - part * high[i]).norm() / resolution[i]);
   }
   return static_cast<int>(std::min<double>(std::ceil(std::sqrt(bends)), kMostPieces));
+}
+
+void append(std::vector<TrackLine>& lines, double t, const Positions& x,
+            const std::vector<double>& resolution) {
+  for (std::size_t i = 0; i < lines.size(); ++i) lines[i].append(t, x[i], resolution[i]);
+}
+
+/// Returns whether a point moves by more than the resolution of its line.
+bool moves(const Positions& low, const Positions& high, const std::vector<double>& resolution) {
+  for (std::size_t i = 0; i < low.size(); ++i)
+    if ((high[i] - low[i]).norm() > resolution[i]) return true;
+  return false;
 }
 
 }  // namespace
@@ -80,24 +92,15 @@ std::vector<TrackLine> track_lines(const std::vector<Track>& tracks, const Model
   for (std::int64_t row = 0; row < recording.rows(); ++row) {
     State state = recording.state(row);
     const Positions high = positions(lines, state);
-    auto append = [&](double t, const Positions& x) {
-      for (std::size_t i = 0; i < lines.size(); ++i) lines[i].append(t, x[i], resolution[i]);
-    };
-    const bool moved = [&] {
-      for (std::size_t i = 0; i < low.size(); ++i)
-        if ((high[i] - low[i]).norm() > resolution[i]) return true;
-      return false;
-    }();
-    if (moved) {
+    if (moves(low, high, resolution)) {
       const RecordedStep step(model, before, state);
-      const double start = before.time(), end = state.time();
-      const int count = pieces(lines, resolution, step, start, end, low, high);
-      for (int k = 1; k < count; ++k) {
-        const double t = start + k * (end - start) / count;
-        append(t, positions(lines, step.at(t)));
+      const int pieces = count_pieces(lines, resolution, step, low, high);
+      for (int k = 1; k < pieces; ++k) {
+        const double t = step.start() + k * (step.end() - step.start()) / pieces;
+        append(lines, t, positions(lines, step.at(t)), resolution);
       }
     }
-    append(state.time(), high);
+    append(lines, state.time(), high, resolution);
     before = std::move(state);
     low = high;
   }

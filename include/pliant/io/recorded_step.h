@@ -16,7 +16,9 @@ class RecordedStep {
 
   /// Whether `high` is the end of a step with error control.
   bool is_long() const { return high_->error > 0; }
-  /// Returns the state at a time t (s) from low.time() to high.time().
+  double start() const { return low_->time(); }  ///< time of `low`, s
+  double end() const { return high_->time(); }   ///< time of `high`, s
+  /// Returns the state at a time t (s) from start() to end().
   State at(double t) const;
 
  private:
