@@ -311,7 +311,7 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "Examples:\n"
       "  pliant run scenes/tumbling.json --obj --png -o out/tumbling\n"
       "  pliant run scenes/balloon.json --png --color-by strain\n"
-      "  pliant run scenes/pull.json --set /parts/0/density=40 --set /gravity=[0,0,-9.81] --end 2\n"
+      "  pliant run scenes/pull.json --set /parts/0/density=40 --set /gravity=[0,0,-1] --end 2\n"
       "  pliant run scenes/pull.json -o out/pull --resume --end 20    extend a run, or continue after "
       "Ctrl-C\n"
       "Output: run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy, "
