@@ -71,7 +71,8 @@ class SceneReader {
     const PointReader points(parts_, scene_->end, faults_);
     scene_->body.stabilization = read_stabilization(root_.object("stabilization"), faults_);
     for (const Reader& r : named("joints"))
-      if (const Joint* joint = read_joint(r, points, faults_, scene_->body)) joints_.emplace_back(r, joint);
+      for (const Joint* joint : read_joint(r, points, faults_, scene_->body))
+        if (!has_ring(r)) joints_.emplace_back(r, joint);
     if (root_.given("contact"))
       read_contact(root_.object("contact"), parts_, times(), folder_, faults_, *scene_);
     for (const Reader& r : named("springs")) read_spring(r, points);
@@ -316,7 +317,7 @@ class SceneReader {
   const Reader root_;
   std::map<std::string, Reader> materials_;
   std::map<std::string, NamedPart> parts_;
-  std::vector<std::pair<Reader, const Joint*>> joints_;
+  std::vector<std::pair<Reader, const Joint*>> joints_;  ///< joints that may have limits and a drive
   std::vector<std::pair<Reader, Spring*>> springs_;
   Scene* scene_ = nullptr;
 };

@@ -182,9 +182,13 @@ inline bool close_joints(const Dynamics& dynamics, const Island& island, bool an
   return any_closed;
 }
 
-/// Throws UnsatisfiableModel for a joint that should have closed by now and cannot, because its rows depend
-/// on rows of other joints that contradict them. step.work: the last evaluation of the step that ends at
-/// step.t. patience: time after which a joint should have closed, in units of 1 / beta.
+/// The gap of a joint closes if it shrinks faster than this share of beta times the gap.
+inline constexpr double kClosingShare = 0.1;
+
+/// Throws UnsatisfiableModel for a joint that should have closed by now, whose gap no longer shrinks, and
+/// which cannot close because its rows depend on rows of other joints that contradict them. step.work: the
+/// last evaluation of the step that ends at step.t. patience: time after which a joint should have closed, in
+/// units of 1 / beta; with 0, the gap may still shrink.
 inline void fail_on_unclosable_joint(StepContext& step, const Island& island, double patience = kPatience) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;
@@ -196,6 +200,10 @@ inline void fail_on_unclosable_joint(StepContext& step, const Island& island, do
     const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
     if (!(gap > kStuckGap * joint.length) || !(beta * (step.t - std::max(0.0, joint.joint->on())) > patience))
       return;
+    const double shrinking =
+        -work.joints.C.segment(joint.row, joint.rows).dot(work.joints.C_dot.segment(joint.row, joint.rows)) /
+        gap;
+    if (patience > 0 && shrinking > kClosingShare * beta * gap) return;
     const double requested = wanted(model, work.joints, j).norm();
     auto disagrees = [&](int k) {
       return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * requested;

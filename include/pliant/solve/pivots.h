@@ -1,6 +1,7 @@
 // The pivots of a factorisation L D L^T of a symmetric positive semi-definite matrix. A row that depends on
 // earlier rows has a vanishing pivot. The dependent row is excluded: its unknown is 0, and the other rows are
-// solved without this row. S is double or Dual<1>.
+// solved without this row. Rows with small pivots are postponed, so that of several rows that depend on each
+// other the one with the smallest pivot is excluded. S is double or Dual<1>.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +35,9 @@ class Pivots {
   /// A pivot vanishes if its ratio to its scale (set_entry, raise_scale) is at most this: kVanished for
   /// RankRule::decide, kRounding for the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
+  /// A row is postponed if the ratio of its pivot to its scale is below this, and another row has a larger
+  /// ratio. Otherwise a row would fix a motion with which it hardly moves, and magnify errors.
+  static constexpr double kSmall = 0.1;
 
   /// Starts a new matrix with this number of rows. RankRule::keep keeps the excluded rows of the previous
   /// matrix, which must have had this number of rows.
@@ -55,6 +59,16 @@ class Pivots {
   /// Applies the larger scales of raise_scale(). Call it after set_entry() of all rows.
   void apply_measures() {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
+  }
+
+  /// Returns whether a row with this pivot should be postponed if another one has a larger ratio.
+  bool small(int row, const S& pivot) const {
+    return !(keep_ && excluded(row)) && plain(pivot) < kSmall * entry_[at(row)];
+  }
+  /// Returns the ratio of a pivot to the scale of its row; -1 for a row that RankRule::keep excludes.
+  double ratio(int row, const S& pivot) const {
+    const double scale = entry_[at(row)];
+    return (keep_ && excluded(row)) || !(scale > 0) ? -1 : plain(pivot) / scale;
   }
 
   /// Stores the pivot of a row and returns true. If the pivot vanishes, or if RankRule::keep excludes the

@@ -6,10 +6,12 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <pliant/body/joints/joint_registry.h>
 
 #include "direction_reader.h"
+#include "joint_ring.h"
 
 namespace pliant {
 
@@ -97,29 +99,53 @@ bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneF
   return faults.errors() == before;
 }
 
+/// Reads the setting of the joint, or of each joint of its ring. The result is empty if there are faults.
+std::vector<JointSetting> read_settings(const Reader& r, JointKeys keys, JointSetting setting,
+                                        SceneFaults& faults) {
+  if (!read_setting(r, keys, setting, faults)) return {};
+  if (!has_ring(r)) return {setting};
+  if (r.faulty("ring")) return {};
+  for (const char* key : {"axis", "drive", "max_swing", "twist_limits"}) {
+    if (!r.given(key)) continue;
+    faults.place(r.at(key), "the points of a ring have no rotation; expected no \"" + std::string(key) +
+                                "\" beside \"ring\"");
+    return {};
+  }
+  if (r.given("rotation")) setting.rotation = read_orientation(r.object("rotation"), faults);
+  return ring_of_joints(r.object("ring"), setting, faults);
+}
+
 }  // namespace
 
-Joint* read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
+bool has_ring(const Reader& r) {
+  return r.record().find("ring") != nullptr && r.json().find("ring") != nullptr;
+}
+
+std::vector<Joint*> read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
+                               MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
-  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return nullptr;
-  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return nullptr;
+  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return {};
+  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return {};
   const auto info = std::find_if(all_joints().begin(), all_joints().end(),
                                  [&](const JointInfo& i) { return i.name == r.name(); });
-  JointSetting setting{*from, *to};
-  if (!read_setting(r, info->keys, setting, faults)) return nullptr;
-  std::string name = name_of(r, info->name, body.joints().size());
-  while (body.has_joint(name)) name += "'";  // another joint of the scene may have the generated name
-  try {
-    Joint& joint = body.join(info->make(std::move(name), setting));
-    if (r.given("off"))
-      joint.during(r.number("on"), r.number("off"));
-    else if (r.given("on"))
-      joint.during(r.number("on"));
-    return &joint;
-  } catch (const std::invalid_argument& e) {
-    faults.place(r.json(), e.what());
-    return nullptr;
+  const std::string entry = name_of(r, info->name, body.joints().size());
+  std::vector<Joint*> joints;
+  for (const JointSetting& setting : read_settings(r, info->keys, JointSetting{*from, *to}, faults)) {
+    std::string name = has_ring(r) ? entry + "." + std::to_string(joints.size() + 1) : entry;
+    while (body.has_joint(name)) name += "'";  // another joint of the scene may have the generated name
+    try {
+      Joint& joint = body.join(info->make(std::move(name), setting));
+      if (r.given("off"))
+        joint.during(r.number("on"), r.number("off"));
+      else if (r.given("on"))
+        joint.during(r.number("on"));
+      joints.push_back(&joint);
+    } catch (const std::invalid_argument& e) {
+      faults.place(r.json(), e.what());
+      return {};
+    }
   }
+  return joints;
 }
 
 }  // namespace pliant

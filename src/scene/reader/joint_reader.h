@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <pliant/body/multibody.h>
 #include <pliant/scene/reader/reader.h>
@@ -17,8 +18,13 @@ JointSolver::Choice joint_solver(const std::string& name);
 /// Returns the stabilization of the joints of a scene. r: an object of stabilization_record().
 Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
-/// Reads a joint without its drive, and adds the joint to the MultiBody. Returns the joint. If the joint has
-/// faults, they are reported instead, and the result is nullptr.
-Joint* read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
+/// Returns whether an entry of the list of joints makes a ring of joints.
+bool has_ring(const Reader& r);
+
+/// Reads an entry of the list of joints without its drive, and adds its joints to the MultiBody: one, or
+/// those of its ring with the names NAME.1, NAME.2, ... Returns the joints. If the entry has faults, they are
+/// reported instead, and the result is empty.
+std::vector<Joint*> read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
+                               MultiBody& body);
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #include "joint_schema.h"
 
 #include <pliant/body/actuation/joint_coordinate.h>
+#include <pliant/body/joints/ball.h>
 #include <pliant/body/joints/joint_registry.h>
 
 #include "drive_schema.h"
@@ -36,6 +37,20 @@ void add_limits(const std::string& type, const Type& orientation, Record& record
   record.fields.push_back(optional("restitution", number(between(0, 1), "1"),
                                    "Share of the rate that a limit reverses. A slow rate does not rebound.",
                                    "0"));
+}
+
+Record ring_record() {
+  return {
+      "ring",
+      "A ring of points in place of one: the joint becomes `count` ball joints NAME.1, NAME.2, ... on equal "
+      "circles around the points of both sides. Two points are a hinge, three or more hold the relative "
+      "orientation.",
+      {required("count", integer(between(2, 1000)), "Number of points.", "3"),
+       required("radius", number(above(0), "m"),
+                "Radius of the circles. Their points are inside the parts, or on the surface of a shell.",
+                "0.1"),
+       optional("axis", vector3("1"),
+                "Axis of the circles, in the frame of the part at \"to\", or of the world.", "[0, 0, 1]")}};
 }
 
 }  // namespace
@@ -82,6 +97,10 @@ Type joint_type(const Type& end_point, const Type& orientation) {
                                                           : drive_record("position_drive", "m", "N"))),
           "Spring, servo or motor on the coordinate of the joint."));
     add_limits(info.name, orientation, record);
+    if (info.name == std::string(Ball::name))
+      record.fields.push_back(optional(
+          "ring", schema::record(ring_record()),
+          "Several points around the given ones. \"rotation\" is then the orientation that they hold."));
     record.fields.push_back(
         optional("on", number(at_least(0), "s"), "Time at which the joint begins to act.", "0"));
     record.fields.push_back(

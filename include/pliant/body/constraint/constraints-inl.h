@@ -274,6 +274,23 @@ double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, 
   return sum;
 }
 
+namespace detail {
+
+/// Rows that depend on each other look independent while their joints are open by a gap e: their relative
+/// pivots are then of the order (e / r)^2, with r the distance of the points of the joints. Returns the
+/// factor on the scale of a pivot with which pivots up to (kOpenPivot e / length)^2 vanish in a closed joint,
+/// at least 1. Joints have such gaps when they have just become closed.
+template <class S>
+double scale_of_open_rows(const JointModel& joint, const ConstraintWorkspace<S>& work, int j) {
+  constexpr double kOpenPivot = 10;
+  if (work.modes[at(j)] != JointMode::closed) return 1;
+  double square = 0;
+  for (int r = 0; r < joint.rows; ++r) square += std::pow(plain(work.C[joint.row + r]), 2);
+  return std::max(1.0, std::pow(kOpenPivot / joint.length, 2) * square / Pivots<S>::kVanished);
+}
+
+}  // namespace detail
+
 template <class S>
 template <class F>
 void JointFactor<S>::factor(const Model& model, const Island& island,
@@ -294,8 +311,9 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
   for (const int j : island.joints) {
     prepare(j);
     const JointModel& joint = model.joints()[at(j)];
-    for (int r = 0; joint.first_offset >= 0 && r < joint.rows; ++r)
-      blocks_.raise_scale(joint.island_row + r, diagonal_of_ends(model, work, j, r));
+    const double open = detail::scale_of_open_rows(joint, work, j);
+    for (int r = 0; (joint.first_offset >= 0 || open > 1) && r < joint.rows; ++r)
+      blocks_.raise_scale(joint.island_row + r, open * diagonal_of_ends(model, work, j, r));
     for (; coupling != island.couplings.end() && coupling->later_joint() == j; ++coupling)
       if (is_selected(work.modes[at(coupling->row_joint)], closed_only) &&
           is_selected(work.modes[at(coupling->column_joint)], closed_only))

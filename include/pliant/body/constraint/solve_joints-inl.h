@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/constraint/feasible_rows.h>
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/dynamics.h>
@@ -86,9 +87,11 @@ class IslandForces {
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
   /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the
-  /// forces to lambda: Eq. (14) after elimination of M.
-  template <class Which>
-  void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
+  /// forces to lambda: Eq. (14) after elimination of M. adapt: called with the rows that x has to remove
+  /// from C_q x; it may change them.
+  template <class Which, class Adapt>
+  void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda,
+               Adapt&& adapt) const {
     const int refinements = group.is_rough() ? 2 : 0;
     for (int pass = 0; pass <= refinements; ++pass) {
       group.joint_rows(x, kept_.rows);
@@ -100,17 +103,31 @@ class IslandForces {
         else
           rows.setConstant(S(0.0));
       }
+      adapt(kept_.rows);
       lambda += group.correct(kept_.rows, x, !group.is_rough());
     }
   }
 
-  /// Adds the forces of the closing joints, scaled down if they accelerate a part by more than
-  /// kMaxClosingRatio times the largest request.
+  template <class Which>
+  void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
+    correct(group, which, x, lambda, [](VecX<S>&) {});
+  }
+
+  /// Adds the forces of the closing joints. Of rows that depend on each other and request different
+  /// accelerations, each gets its share: the sum of the squared violations is least. The forces are scaled
+  /// down if they accelerate a part by more than kMaxClosingRatio times the largest request.
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;
     const double asked = largest_request(closing, before);
-    correct(group_, closing, kept_.x, kept_.lambda);
+    const DependentRows<S> dependent(model_, island_, work_, group_);
+    std::vector<bool> may_change(at(island_.rows));
+    for (const int j : island_.joints)
+      for (int r = 0; r < model_.joints()[at(j)].rows; ++r)
+        may_change[at(model_.joints()[at(j)].island_row + r)] = closing(j);
+    correct(group_, closing, kept_.x, kept_.lambda, [&](VecX<S>& rows) {
+      if (!dependent.empty()) dependent.make_feasible(may_change, rows);
+    });
     const VecX<S> change = kept_.x - before;
     const double largest = largest_acceleration(change);
     if (!(largest > kMaxClosingRatio * asked)) return;

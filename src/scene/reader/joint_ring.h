@@ -1,0 +1,25 @@
+// Rings of points: one entry of a scene that makes several point-to-point joints. Three points hold the
+// relative orientation of two parts, as in the paper, and two points are a hinge.
+#pragma once
+
+#include <vector>
+
+#include <pliant/body/joints/joint_setting.h>
+#include <pliant/scene/reader/reader.h>
+
+#include "scene/scene_faults.h"
+
+namespace pliant {
+
+/// Returns the settings of the joints of a ring, in the order of their names. With orthonormal directions
+/// e_1, e_2 perpendicular to the axis, and the angles a_k = 2 pi k / count, the points of the side `to` are
+///   X + radius (cos a_k e_1 + sin a_k e_2)                        (m, in the frame of the part at rest, or
+///   in the world),
+/// with X the point of the setting. Those of the side `from` have the same directions if the part of `from`
+/// has the orientation setting.rotation, or else that of time 0, relative to the part of `to`. On both sides
+/// they are therefore the corners of equal polygons. Points of a shell are moved to its surface. r: an object
+/// of ring_record(). If a point is outside of its part, or if a point of the world moves, the fault is
+/// reported and the result is empty.
+std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& setting, SceneFaults& faults);
+
+}  // namespace pliant
