@@ -1,0 +1,109 @@
+// The paper's Fig. 5: twelve point-to-point joints, and nothing else, assemble and hold a snowman, which hops
+// along a prescribed path by changes of its own shape and then stands still.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include <pliant/scene/read_scene.h>
+#include <pliant/simulate/simulation.h>
+
+#include "catch.h"
+#include "deepest.h"
+
+namespace snowman_test {
+
+using namespace pliant;
+
+namespace {
+
+/// Times at which the snowman is assembled, has landed, and starts to hop, s.
+constexpr double kAssembled = 3.1, kLanded = 4.9;
+
+Vec3<double> position(const Simulation& simulation, int part) {
+  return simulation.state().q.segment<3>(simulation.model().parts()[static_cast<std::size_t>(part)].q0);
+}
+/// Returns the angle between the axis of the base and the vertical, rad.
+double tilt(const Simulation& simulation) {
+  const Vec<double, 4> q = simulation.state().q.segment<4>(simulation.model().parts()[0].q0 + 3);
+  return std::acos(std::min(1.0, 1 - 2 * (q[1] * q[1] + q[2] * q[2])));
+}
+
+}  // namespace
+
+TEST_CASE("the snowman assembles itself by twelve point joints and hops along its path", "[joints][long]") {
+  Diagnostics diagnostics;
+  const auto scene = read_scene(std::string(PLIANT_SCENES) + "/snowman.json", {}, diagnostics);
+  Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
+  const Model& model = simulation.model();
+
+  // Twelve point-to-point joints between parts hold it; no spring, force, torque or prescribed motion moves
+  // it.
+  REQUIRE(model.joints().size() == 12);
+  for (const JointModel& joint : model.joints()) {
+    CHECK(joint.joint->type() == std::string("ball"));
+    CHECK(joint.sides.size() == 2);
+  }
+  CHECK(model.springs().empty());
+  CHECK(model.forces().empty());
+  CHECK(model.torques().empty());
+  for (const PartModel& part : model.parts()) {
+    CHECK(part.q0 >= 0);
+    CHECK(part.n_s > 0);
+  }
+
+  // Assembly: parts that no joint connects do not overlap. Joined parts are never nearer than at their seat
+  // by more than 3 cm, so that none passes through another.
+  std::map<std::pair<int, int>, double> nearest;
+  const auto distance = [&](const std::pair<int, int>& pair) {
+    return (position(simulation, pair.first) - position(simulation, pair.second)).norm();
+  };
+  for (const JointModel& joint : model.joints())
+    nearest.emplace(std::minmax(joint.sides[0].part, joint.sides[1].part), 1e9);
+  CHECK(nearest.size() == 8);
+  double overlap = 0;
+  while (simulation.time() < kAssembled) {
+    simulation.step(scene->step);
+    overlap = std::max(overlap, test::deepest_overlap(simulation));
+    for (auto& [pair, least] : nearest) least = std::min(least, distance(pair));
+  }
+  CHECK(overlap <= 1e-6);
+  for (const auto& [pair, least] : nearest) {
+    CAPTURE(pair.first, pair.second);
+    CHECK(least >= distance(pair) - 0.03);
+  }
+  for (const JointMode mode : simulation.state().joints) CHECK(mode == JointMode::closed);
+  CHECK(simulation.contact()->contacts().empty());
+
+  // It drops and then hops: at least six flights, along the path y = 0.35 sin(2.618 x) to x = 2.4.
+  int hops = 0;
+  double path_error = 0, largest_tilt = 0, since = -1, airborne = 0;
+  while (simulation.time() < scene->end - 0.5 * scene->step) {
+    simulation.step(scene->step);
+    if (simulation.time() < kLanded) continue;
+    const Vec3<double> c = position(simulation, 0);
+    path_error = std::max(path_error, std::abs(c[1] - 0.35 * std::sin(2.618 * c[0])));
+    largest_tilt = std::max(largest_tilt, tilt(simulation));
+    if (!simulation.contact()->contacts().empty())
+      since = -1;
+    else if (since < 0)
+      since = simulation.time();
+    else if (simulation.time() - since > 0.1 && simulation.time() - since <= 0.1 + scene->step)
+      ++hops;
+    airborne += simulation.contact()->contacts().empty() ? scene->step : 0;
+  }
+  CAPTURE(path_error, largest_tilt, airborne);
+  CHECK(hops >= 6);
+  CHECK(airborne >= 2);
+  CHECK(path_error <= 0.1);
+  CHECK(largest_tilt <= 0.25);
+  // It stands upright and still at the end of the path.
+  CHECK(std::abs(position(simulation, 0)[0] - 2.4) <= 0.05);
+  CHECK(tilt(simulation) <= 0.01);
+  CHECK(simulation.state().v.segment<3>(model.parts()[0].v0).norm() <= 0.01);
+}
+
+}  // namespace snowman_test
