@@ -279,13 +279,15 @@ namespace detail {
 /// Rows that depend on each other look independent while their joints are open by a gap e: their relative
 /// pivots are then of the order (e / r)^2, with r the distance of the points of the joints. Returns the
 /// factor on the scale of a pivot with which pivots up to (kOpenPivot e / length)^2 vanish in a closed joint,
-/// at least 1. Joints have such gaps when they have just become closed.
+/// at least 1. Joints that have just become closed have gaps up to kJustClosed lengths; larger gaps do not
+/// count.
 template <class S>
 double scale_of_open_rows(const JointModel& joint, const ConstraintWorkspace<S>& work, int j) {
-  constexpr double kOpenPivot = 10;
+  constexpr double kOpenPivot = 10, kJustClosed = 2e-3;
   if (work.modes[at(j)] != JointMode::closed) return 1;
   double square = 0;
   for (int r = 0; r < joint.rows; ++r) square += std::pow(plain(work.C[joint.row + r]), 2);
+  if (square > std::pow(kJustClosed * joint.length, 2)) return 1;
   return std::max(1.0, std::pow(kOpenPivot / joint.length, 2) * square / Pivots<S>::kVanished);
 }
 
