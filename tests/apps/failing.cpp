@@ -63,24 +63,26 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   const TestFolder place;
   const std::string tumbling =
       "run " + std::string(PLIANT_SCENES) + "/tumbling.json -o tumbling --force --integrator rk4 --step ";
-  const Result too_long = place.pliant(tumbling + "0.1"), slider = run(place, "open_slider_gains_energy");
-  for (const Result& result : {too_long, slider}) {
-    CAPTURE(result.err);
-    CHECK(result.code == 5);
-    CHECK(has(result.err, "of the energy that could move (at most 50 %)"));
-    CHECK(has(result.err, "energy of part '"));
-    CHECK(has(result.err, "at t = "));
-  }
-  for (const char* folder : {"tumbling", "out"}) {
-    CHECK(place.record(folder)["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
-    CHECK_FALSE(has(place.motion(folder), "nan"));
-  }
-  CHECK(has(slider.err, "found no remedy"));
+  const Result too_long = place.pliant(tumbling + "0.1");
+  CAPTURE(too_long.err);
+  CHECK(too_long.code == 5);
+  CHECK(has(too_long.err, "of the energy that could move (at most 50 %)"));
+  CHECK(has(too_long.err, "energy of part '"));
+  CHECK(has(too_long.err, "at t = "));
+  CHECK(place.record("tumbling")["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
+  CHECK_FALSE(has(place.motion("tumbling"), "nan"));
   const std::string step = recommended_step(too_long.err);
   if (step.empty())  // a slow build does not finish the trials in time
     CHECK(has(too_long.err, "they did not finish with"));
   else
     CHECK(place.pliant(tumbling + step).code == 0);  // its error of the energy balance is at most 1 %
+}
+
+TEST_CASE("open joints that contradict each other do not gain energy") {
+  const TestFolder place;
+  CHECK(run(place, "open_slider_gains_energy").code == 0);
+  CHECK(place.record("out")["monitors"]["balance_share"] < 0.5);
+  CHECK_FALSE(has(place.motion("out"), "nan"));
 }
 
 TEST_CASE("limits that contacts press against do not gain energy") {
@@ -110,7 +112,7 @@ TEST_CASE("joints that cannot hold together end a run with code 4, with their na
   CHECK(has(strings.err, "held open by string 'j1'"));
   const Result slider = run(place, "slider_and_ball");
   CHECK(slider.code == 4);
-  CHECK(has(slider.err, "slider 'slider1' stays open by 3.9"));
+  CHECK(has(slider.err, "slider 'slider1' stays open by 0.2"));
   CHECK(has(slider.err, "held open by ball 'ball2'"));
 }
 

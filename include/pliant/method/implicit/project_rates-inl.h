@@ -111,6 +111,7 @@ PLIANT_INLINE void project_rates(const Model& model, const ImplicitParts& parts,
     if (!has_implicit(island, parts)) continue;
     filtered.joints.modes = joints.modes;
     filtered.joints.rank = joints.rank;
+    filtered.joints.C = joints.C;
     filtered.joints.Cq = joints.Cq;
     filtered.joints.Y.resize(joints.Y.size());
     filtered.joints.W_c.resize(model.islands().size());
