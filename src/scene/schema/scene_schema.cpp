@@ -282,7 +282,8 @@ Record body_force_record() {
 
 Record track_record() {
   return {"track",
-          "A material point whose path is drawn and recorded. A state is recorded whenever the point has moved by more "
+          "A material point whose path is drawn and recorded. A state is recorded whenever the point has "
+          "moved by more "
           "than 2 % of the size of its part, also between two pictures.",
           {optional("name", name(), "Name in the outputs."),
            required("part", name(), "Name of the part.", "\"ball\""),
