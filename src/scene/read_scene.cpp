@@ -1,3 +1,4 @@
+#include <pliant/part/quadrature/body_points.h>
 #include <pliant/scene/read_scene.h>
 
 #include <algorithm>
@@ -295,37 +296,36 @@ class SceneReader {
   }
   void read_surface_force(const Reader& r, const PointReader& points, const StateReader& states) {
     const Part* part = points.part(r);
-    const bool complete = r.json().find("traction") != nullptr || r.json().find("pressure") != nullptr;
-    if (!complete) faults_.value(r.json(), "expected a \"traction\" or a \"pressure\"");
-    StateVector traction;
-    StateFunction pressure;
-    bool good = part != nullptr && complete;
-    if (r.json().find("traction") != nullptr) {
-      const std::optional<StateVector> read = states.vector(r, "traction");
-      good = good && read;
-      if (read) traction = *read;
-    }
-    if (r.json().find("pressure") != nullptr && r.given("pressure")) {
-      const std::optional<StateFunction> read = states.function(r.at("pressure"));
-      good = good && read;
-      if (read) pressure = *read;
-    }
-    if (!good) return;
+    if (r.json().find("traction") == nullptr && r.json().find("pressure") == nullptr)
+      return faults_.value(r.json(), "expected a \"traction\" or a \"pressure\"");
+    std::optional<StateVector> traction = StateVector();
+    if (r.given("traction")) traction = states.vector(r, "traction");
+    std::optional<StateFunction> pressure = StateFunction();
+    if (r.given("pressure")) pressure = states.function(r.at("pressure"));
+    if (part == nullptr || !traction || !pressure) return;
     const std::string name = name_of(r, "surface_force", scene_->body.distributed_forces().size());
-    scene_->body.surface_force(name, *part, traction, pressure).resolution =
-        static_cast<int>(r.integer("resolution"));
+    finish(r, *part, scene_->body.surface_force(name, *part, *traction, *pressure));
   }
   void read_body_force(const Reader& r, const PointReader& points, const StateReader& states) {
     const Part* part = points.part(r);
     const std::optional<StateVector> acceleration = states.vector(r, "acceleration");
-    if (part != nullptr && part->local() == nullptr && part->mass_points().n_points == 0)
+    if (part == nullptr || !acceleration) return;
+    if (part->prepared() && !has_known_masses(*part))
       return faults_.place(
           r.at("part"),
           "the \"inertia\" of this part does not say where its mass is; expected a part with a "
           "density or a mass");
-    if (part != nullptr && acceleration)
-      scene_->body.body_force(name_of(r, "body_force", scene_->body.distributed_forces().size()), *part,
-                              *acceleration);
+    const std::string name = name_of(r, "body_force", scene_->body.distributed_forces().size());
+    finish(r, *part, scene_->body.body_force(name, *part, *acceleration));
+  }
+  /// Reads the resolution of a distributed force. Warns of keys without effect.
+  void finish(const Reader& r, const Part& part, DistributedForce& force) {
+    force.resolution = static_cast<int>(r.integer("resolution"));
+    if (part.fixed())
+      faults_.warn(r.at("part"), "the force has no effect, because the part has no freedom to move");
+    if (r.json().find("resolution") != nullptr && part.prepared() && part.local() != nullptr &&
+        part.local()->mesh().mass.size() > 0)
+      faults_.warn(r.at("resolution"), "it has no effect, because the part has a mesh of its own");
   }
   void read_track(const Reader& r, const PointReader& points) {
     const std::optional<Point> at = points.on_part(r);

@@ -51,11 +51,14 @@ std::vector<ForceArrow> load_forces(const Simulation& simulation) {
   }
   for (const DistributedModel& m : model.distributed_forces()) {
     const PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(m.part)];
-    Vec3<double> sum = Vec3<double>::Zero(), middle = Vec3<double>::Zero();
-    detail::for_each_force(e, m, [&](int, const Vec3<double>& force) { sum += force; });
-    for (Eigen::Index k = 0; k < m.X.cols(); ++k)
-      middle += w.port_x[static_cast<std::size_t>(m.first_port + k)];
-    arrows.push_back({middle / static_cast<double>(m.X.cols()), sum});
+    Vec3<double> sum = Vec3<double>::Zero(), weighted = Vec3<double>::Zero();
+    double weight = 0;
+    detail::for_each_force(e, m, [&](int port, const Vec3<double>& force) {
+      sum += force;
+      weight += force.norm();
+      weighted += force.norm() * w.port_x[static_cast<std::size_t>(port)];
+    });
+    if (weight > 0) arrows.push_back({weighted / weight, sum});
   }
   return arrows;
 }

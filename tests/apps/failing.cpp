@@ -72,8 +72,11 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   CHECK(place.record("tumbling")["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
   CHECK_FALSE(has(place.motion("tumbling"), "nan"));
   const std::string step = recommended_step(too_long.err);
-  if (step.empty())  // a slow build does not finish the trials in time
+  // On a slow machine the time of the trials ends before one is accurate, or before one reaches the end.
+  if (step.empty())
     CHECK(has(too_long.err, "they did not finish with"));
+  else if (has(too_long.err, "but the error of its energy balance is"))
+    CHECK(place.pliant(tumbling + step).code == 6);
   else
     CHECK(place.pliant(tumbling + step).code == 0);  // its error of the energy balance is at most 1 %
 }

@@ -11,25 +11,15 @@
 
 #include "catch.h"
 #include "motion.h"
+#include "scene_run.h"
 
 namespace actuation_scenes_test {
 
 using namespace pliant;
+using test::messages_of;
+using Run = test::SceneRun;
 
 namespace {
-
-/// A scene with its simulation.
-struct Run {
-  explicit Run(const std::string& text, const std::string& method = "rk4", double tolerance = 0) {
-    Diagnostics diagnostics;
-    scene = parse_scene("s.json", text, {}, diagnostics);
-    CHECK(diagnostics.text().empty());
-    simulation = std::make_unique<Simulation>(scene->body, method, 1, tolerance);
-  }
-  double sensor(std::size_t k = 0) { return simulation->sensors()[static_cast<Eigen::Index>(k)]; }
-  std::unique_ptr<Scene> scene;
-  std::unique_ptr<Simulation> simulation;
-};
 
 /// A bar that a hinge along y connects to the world at its end; gravity is zero. The distance of its centre
 /// from the hinge is 0.5 m. keys: more keys of the hinge; more: more keys of the scene.
@@ -51,15 +41,6 @@ std::array<double, 2> step_response(double k, double c, double m, double t) {
   const double decay = c / (2 * m), omega = std::sqrt(k / m - decay * decay), e = std::exp(-decay * t);
   return {1 - e * (std::cos(omega * t) + decay / omega * std::sin(omega * t)),
           e * (omega + decay * decay / omega) * std::sin(omega * t)};
-}
-
-std::string error_of(const std::string& text) {
-  Diagnostics diagnostics;
-  try {
-    parse_scene("s.json", text, {}, diagnostics);
-  } catch (const SceneError&) {
-  }
-  return diagnostics.text();
 }
 
 }  // namespace
@@ -290,16 +271,16 @@ TEST_CASE("faulty names in formulas are reported with the names that exist", "[a
            formula + R"json(", 0, 0]}]})json";
   };
   using test::has_text;
-  CHECK_THAT(error_of(with_force("bal.z")),
+  CHECK_THAT(messages_of(with_force("bal.z")),
              has_text("no part, joint, spring, track, sensor or input \"bal\""));
-  CHECK_THAT(error_of(with_force("ball.height")), has_text("\"ball\" has no quantity \"height\""));
-  CHECK_THAT(error_of(with_force("ball.r")), has_text("\"ball\" has no quantity \"r\""));  // r is frozen
-  CHECK_THAT(error_of(with_force("2 * x")), has_text("unknown name \"x\""));
-  CHECK_THAT(error_of(with_force("ball.z +")), has_text("expected"));
-  CHECK_THAT(error_of(hinged_bar(R"json("limits": [1, -1])json")), has_text("lower < upper"));
-  CHECK_THAT(error_of(hinged_bar(R"json("limits": [-4, 4])json")),
+  CHECK_THAT(messages_of(with_force("ball.height")), has_text("\"ball\" has no quantity \"height\""));
+  CHECK_THAT(messages_of(with_force("ball.r")), has_text("\"ball\" has no quantity \"r\""));  // r is frozen
+  CHECK_THAT(messages_of(with_force("2 * x")), has_text("unknown name \"x\""));
+  CHECK_THAT(messages_of(with_force("ball.z +")), has_text("expected"));
+  CHECK_THAT(messages_of(hinged_bar(R"json("limits": [1, -1])json")), has_text("lower < upper"));
+  CHECK_THAT(messages_of(hinged_bar(R"json("limits": [-4, 4])json")),
              has_text("less than one turn minus 0.1 rad"));
-  CHECK_THAT(error_of(hinged_bar("", R"json("sensors ": [])json")), has_text("sensors"));
+  CHECK_THAT(messages_of(hinged_bar("", R"json("sensors ": [])json")), has_text("sensors"));
 }
 
 TEST_CASE("loads that read the state connect parts, and other scenes have no coordinates",

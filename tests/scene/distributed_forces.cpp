@@ -10,44 +10,22 @@
 
 #include "catch.h"
 #include "motion.h"
+#include "scene_run.h"
 
 namespace distributed_forces_test {
 
 using namespace pliant;
+using test::messages_of;
+using Run = test::SceneRun;
 
 namespace {
 
-struct Run {
-  explicit Run(const std::string& text, const std::string& method = "rk4", double tolerance = 0) {
-    Diagnostics diagnostics;
-    scene = parse_scene("s.json", text, {}, diagnostics);
-    CHECK(diagnostics.text().empty());
-    simulation = std::make_unique<Simulation>(scene->body, method, 1, tolerance);
-  }
-  VecX<double> v_dot() const {
-    Workspace<double> work;
-    const State& state = simulation->state();
-    simulation->dynamics().accelerations(state.time(), state.q, state.v, state, work);
-    return work.v_dot;
-  }
-  /// The centre of mass of the only part, which is rigid, m.
-  Vec3<double> centre() const {
-    const Inertia<double>& inertia = scene->body.parts()[0]->rest_inertia();
-    const State& state = simulation->state();
-    return simulation->model().position(state, 0) +
-           simulation->model().orientation(state, 0) * Vec3<double>(inertia.moment / inertia.mass);
-  }
-  std::unique_ptr<Scene> scene;
-  std::unique_ptr<Simulation> simulation;
-};
-
-std::string error_of(const std::string& text) {
-  Diagnostics diagnostics;
-  try {
-    parse_scene("s.json", text, {}, diagnostics);
-  } catch (const SceneError&) {
-  }
-  return diagnostics.text();
+/// The centre of mass of the only part of a scene, which is rigid, m.
+Vec3<double> centre(const Run& run) {
+  const Inertia<double>& inertia = run.scene->body.parts()[0]->rest_inertia();
+  const State& state = run.simulation->state();
+  return run.simulation->model().position(state, 0) +
+         run.simulation->model().orientation(state, 0) * Vec3<double>(inertia.moment / inertia.mass);
 }
 
 /// A scene without gravity with one part and one distributed force. part: more keys of the part.
@@ -103,7 +81,7 @@ TEST_CASE("a drag of the surface of a box is exact, because its faces are flat",
   for (int i = 0; i < 3; ++i) CHECK(a[i] == Approx(-4 * area * (i + 1) / mass).epsilon(1e-12));
 }
 
-TEST_CASE("a force along the normal sees the side from which the wind blows", "[loads]") {
+TEST_CASE("a force along the normal acts on the side from which the wind blows", "[loads]") {
   // Newton's pressure on a plate that faces a wind of 3 m/s along x: only the front face counts.
   const Run run(
       scene_of(R"json("shape": "box", "density": 100, "parameters": {"a1": 0.01, "a2": 0.2, "a3": 0.5},
@@ -140,9 +118,9 @@ TEST_CASE("an affine field of force per mass is exact", "[loads]") {
   // Every point is an isotropic oscillator about the origin, so a rigid body moves without a torque.
   const std::string force = R"json("acceleration": ["-9 * x", "-9 * y", "-9 * z"])json";
   Run run(scene_of(kTwisted, "body_forces", force), "dop853", 1e-11);
-  const Vec3<double> start = run.centre();
+  const Vec3<double> start = centre(run);
   run.simulation->step(0.7);
-  CHECK((run.centre() - start * std::cos(3 * 0.7)).norm() <= 1e-9);
+  CHECK((centre(run) - start * std::cos(3 * 0.7)).norm() <= 1e-9);
   CHECK(run.simulation->state().v.segment<3>(3).norm() <= 1e-9);
 }
 
@@ -188,23 +166,113 @@ TEST_CASE("distributed forces keep the order of each method, and their work clos
   }
 }
 
-TEST_CASE("faulty distributed forces are told with their place", "[loads]") {
+TEST_CASE("faulty distributed forces are reported at their place", "[loads]") {
   const std::string part = R"json("shape": "sphere")json";
-  CHECK(error_of(scene_of(part, "surface_forces", R"json("resolution": 4)json"))
+  CHECK(messages_of(scene_of(part, "surface_forces", R"json("resolution": 4)json"))
             .find("expected a \"traction\" or a \"pressure\"") != std::string::npos);
-  CHECK(error_of(scene_of(part, "surface_forces", R"json("pressure": "3 * height")json")).find("height") !=
+  CHECK(messages_of(scene_of(part, "surface_forces", R"json("pressure": "3 * height")json")).find("height") !=
         std::string::npos);
-  CHECK(error_of(scene_of(part, "body_forces", R"json("acceleration": ["nx", 0, 0])json")).find("nx") !=
+  CHECK(messages_of(scene_of(part, "body_forces", R"json("acceleration": ["nx", 0, 0])json")).find("nx") !=
         std::string::npos);
-  CHECK(error_of(R"json({"parts": [{"name": "a", "shape": "sphere"}], "forces": [{"part": "a",
+  CHECK(messages_of(R"json({"parts": [{"name": "a", "shape": "sphere"}], "forces": [{"part": "a",
       "at": {"u": 0, "v": 0}, "force": ["vx", 0, 0]}]})json")
             .find("vx") != std::string::npos);
   CHECK(
-      error_of(
+      messages_of(
           scene_of(
               R"json("shape": "sphere", "inertia": {"mass": 1, "moments": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})json",
               "body_forces", R"json("acceleration": [1, 0, 0])json"))
           .find("inertia") != std::string::npos);
+}
+
+TEST_CASE("a body force that is not affine converges with its resolution", "[loads]") {
+  // The means of Z^4 over a sphere and of Z^6 over a box of half height 1. The rule of Gauss in u, v and w
+  // converges exponentially.
+  for (const auto& [shape, power, exact] :
+       {std::tuple("sphere", "4", 3.0 / 35), std::tuple("box", "6", 1.0 / 7)}) {
+    std::vector<double> errors;
+    for (const int resolution : {4, 8, 16}) {
+      const Run run(scene_of(std::string("\"shape\": \"") + shape + "\"", "body_forces",
+                             std::string("\"acceleration\": [0, 0, \"Z^") + power +
+                                 "\"], \"resolution\": " + std::to_string(resolution)));
+      errors.push_back(std::abs(run.v_dot()[2] - exact));
+    }
+    CAPTURE(shape, errors);
+    CHECK(errors[0] <= 0.02);
+    CHECK(errors[1] <= 1e-5);
+    CHECK(errors[2] <= 1e-12);
+  }
+}
+
+TEST_CASE("body forces act on parts with every basis of local deformation", "[loads]") {
+  for (const char* local :
+       {R"json("basis": "polynomial", "degree": 2, "laws": [{"type": "elastic", "E": 1e6}])json",
+        R"json("basis": "modes", "modes": 6, "resolution": 2, "laws": [{"type": "elastic", "E": 1e6}])json",
+        R"json("resolution": 2, "laws": [{"type": "elastic", "E": 1e6}])json"}) {
+    CAPTURE(local);
+    const Run run(scene_of(std::string("\"shape\": \"sphere\", \"local\": {") + local + "}", "body_forces",
+                           R"json("acceleration": [0, 3, 0])json"));
+    const VecX<double> a = run.v_dot();
+    CHECK(a[1] == Approx(3).epsilon(1e-10));
+    CHECK(a.tail(a.size() - 6).norm() <= 1e-7);
+  }
+}
+
+TEST_CASE("the work of distributed forces on bodies in contact closes the balance", "[loads][contact]") {
+  const std::string text =
+      scene_of(R"json("shape": "box", "parameters": {"a1": 0.2, "a2": 0.2, "a3": 0.1},
+      "position": [0, 0, 0.1], "velocity": [1, 0, 0])json",
+               "body_forces", R"json("acceleration": ["2 - 0.5 * vx", 0, "-10 - x"])json");
+  const std::string with_floor = text.substr(0, text.size() - 1) +
+                                 R"json(, "contact": {"friction": 0.3, "planes": [{"name": "floor"}]}})json";
+  double errors[2];
+  for (const int k : {0, 1}) {
+    Run run(with_floor, "semi_implicit_euler");
+    for (int i = 0; i < 100 << k; ++i) run.simulation->step(0.005 / (1 << k));
+    errors[k] = std::abs(run.simulation->ledger().balance);
+  }
+  const double mass = 1000 * 8 * 0.2 * 0.2 * 0.1;
+  CAPTURE(errors[0], errors[1]);
+  CHECK(errors[0] <= 0.02 * mass);
+  CHECK(errors[1] <= 0.6 * errors[0] + 1e-12);
+}
+
+TEST_CASE("a part falls asleep if its distributed forces read nothing but its own points",
+          "[loads][contact]") {
+  for (const auto& [pressure, sleeps] :
+       {std::pair("0.001 * vn", true), std::pair("0.001 * vn + 0.001 * sin(t)", false)}) {
+    const std::string text = scene_of(R"json("shape": "box", "position": [0, 0, 1])json", "surface_forces",
+                                      std::string("\"pressure\": \"") + pressure + "\", \"resolution\": 1");
+    Run run("{\"contact\": {\"planes\": [{\"name\": \"floor\"}], \"sleep\": {\"speed\": 0.01}}, " +
+            text.substr(text.find("\"parts\"")));
+    for (int i = 0; i < 200; ++i) run.simulation->step(0.01);
+    CAPTURE(pressure);
+    CHECK(pliant::sleeps(run.simulation->state(), 0) == sleeps);
+  }
+}
+
+TEST_CASE("a pressure that is not finite is named, with fixed steps and with a tolerance", "[loads]") {
+  const std::string text = scene_of(R"json("shape": "sphere")json", "surface_forces",
+                                    R"json("name": "wind", "pressure": "z / (vx - vx)")json");
+  for (const double tolerance : {0.0, 1e-6}) {
+    Run run(text, "dop853", tolerance);
+    CHECK_THROWS_WITH(run.simulation->step(0.1), test::has_text("distributed force 'wind'"));
+  }
+}
+
+TEST_CASE("distributed forces without effect and hidden names are reported", "[loads]") {
+  const std::string pressure = R"json("pressure": "x")json";
+  CHECK_THAT(messages_of(scene_of(R"json("shape": "sphere", "fixed": true)json", "surface_forces", pressure)),
+             test::has_text("has no effect"));
+  const std::string text = scene_of(R"json("shape": "sphere")json", "surface_forces", pressure);
+  CHECK_THAT(
+      messages_of(text.substr(0, text.size() - 1) + R"json(, "sensors": [{"name": "x", "value": "t"}]})json"),
+      test::has_text("another name of the sensor"));
+  // A part with a fault gets no second one.
+  const std::string faulty = messages_of(scene_of(
+      R"json("shape": "sphere", "local": {"laws": [{"type": "membrane", "E": 1e5, "thickness": 0.01}]})json",
+      "body_forces", R"json("acceleration": [1, 0, 0])json"));
+  CHECK(faulty.find("inertia") == std::string::npos);
 }
 
 TEST_CASE("a scene gives a mass distribution by a formula", "[mass]") {
@@ -232,6 +300,10 @@ TEST_CASE("a scene gives a mass distribution by a formula", "[mass]") {
   CHECK(messages.find("without t") != std::string::npos);
   scene_with("1 + height", messages);
   CHECK(messages.find("height") != std::string::npos);
+  scene_with("1 + 10000 * exp(-2000 * ((X - 0.3)^2 + (Y - 0.2)^2 + (Z - 0.1)^2))", messages);
+  CHECK_THAT(messages, test::has_text("relative error of about"));
+  scene_with("1 + step(X * Y * Z - 0.1)", messages);
+  CHECK_THAT(messages, test::has_text("relative error of about"));
   scene_with("X", messages);
   CHECK(messages.find("mass distribution is -") != std::string::npos);
 }

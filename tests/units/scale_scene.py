@@ -27,6 +27,7 @@ OBJECTS = {
               "body_forces": "[body_force]", "tracks": "[track]", "sensors": "[sensor]", "output": "[output]"},
     "time": {"end": "s", "step": "s", "integrator": KEEP, "tolerance": KEEP, "solver": KEEP},
     "part": {"name": KEEP, "shape": KEEP, "deformations": KEEP, "shell": KEEP, "thickness": "m", "local": "[local]",
+             # A mass distribution is a factor; its unit is that of an angle, 1.
              "mass": "kg", "mass_matrix": KEEP, "mass_distribution": "rad", "inertia": "[inertia]", "position": "m",
              "orientation": KEEP, "velocity": "m/s", "angular_velocity": "1/s", "fixed": KEEP, "motion": "[motion]",
              "resolution": KEEP, "elasticity": "[law]", "alpha": "1/s", "beta": "s", "drag": "1/s"},
@@ -64,7 +65,7 @@ OBJECTS = {
     "sensor": {"name": KEEP, "value": "rad"},  # the value keeps its old unit: its factor is that of an angle, 1
     "torque": {"name": KEEP, "part": KEEP, "against": KEEP, "torque": "N m", "frame": KEEP},
     "surface_force": {"name": KEEP, "part": KEEP, "traction": "Pa", "pressure": "Pa", "resolution": KEEP},
-    "body_force": {"name": KEEP, "part": KEEP, "acceleration": "m/s^2"},
+    "body_force": {"name": KEEP, "part": KEEP, "acceleration": "m/s^2", "resolution": KEEP},
     "output": {"frame_rate": "1/s"},
 }
 # Keys for pictures, which are left out.
@@ -108,7 +109,8 @@ def size_of_unit(unit, units):
 
 
 def size_of_signal(name, units):
-    """The size of the unit of a quantity that a formula reads: t, NAME.QUANTITY, or a sensor."""
+    """The size of the unit of a quantity that a formula reads: t, NAME.QUANTITY, a sensor or input, or a quantity at
+    the points of a distributed force. Sensors must not have the names of the latter."""
     owner, _, quantity = name.partition(".")
     if name == "t":
         return units.time

@@ -79,8 +79,10 @@ PLIANT_INLINE LoadWork::Places LoadWork::places(const Evaluation<double>& e) con
   Places places;
   for (const ForceModel& f : model.forces())
     places.forces.push_back(detail::motion_of(e, f.at, f.force->at).x);
-  for (const DistributedModel& m : model.distributed_forces())
-    places.distributed.push_back(e.part_work(m.part).port_x);
+  for (const DistributedModel& m : model.distributed_forces()) {
+    const auto first = e.part_work(m.part).port_x.begin() + m.first_port;
+    places.distributed.emplace_back(first, first + m.X.cols());
+  }
   for (const TorqueModel& m : model.torques())
     for (const int part : {m.part, m.against})
       places.rotations.push_back(part < 0 ? Mat3<double>::Identity() : e.part_work(part).R);
@@ -105,10 +107,13 @@ PLIANT_INLINE double LoadWork::work_until(double t, const State& to) {
     const Vec3<double> force = detail::force_of(e, f, detail::motion_of(e, f.at, f.force->at));
     work += force.dot(after.forces[k] - before_.forces[k]);
   }
-  for (std::size_t k = 0; k < model.distributed_forces().size(); ++k)
-    detail::for_each_force(e, model.distributed_forces()[k], [&](int port, const Vec3<double>& force) {
-      work += force.dot(after.distributed[k][at(port)] - before_.distributed[k][at(port)]);
+  for (std::size_t k = 0; k < model.distributed_forces().size(); ++k) {
+    const DistributedModel& m = model.distributed_forces()[k];
+    detail::for_each_force(e, m, [&](int port, const Vec3<double>& force) {
+      const auto place = at(port - m.first_port);
+      work += force.dot(after.distributed[k][place] - before_.distributed[k][place]);
     });
+  }
   for (std::size_t k = 0; k < model.torques().size(); ++k) {
     const TorqueModel& m = model.torques()[k];
     Vec3<double> torque = detail::torque_of(e, m);

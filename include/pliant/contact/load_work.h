@@ -20,7 +20,7 @@ class LoadWork {
   /// The places of the loads that displacements change.
   struct Places {
     std::vector<Vec3<double>> forces;                    // attachment point of each force, m, world
-    std::vector<std::vector<Vec3<double>>> distributed;  // ports of each part with a distributed force
+    std::vector<std::vector<Vec3<double>>> distributed;  // ports of each distributed force, m, world
     std::vector<Mat3<double>> rotations;                 // both parts of each torque, body to world
     std::vector<Vec3<double>> springs;                   // from end a to end b of each muscle, m, world
     std::vector<double> drives;                          // coordinate of each drive that is not passive

@@ -37,6 +37,16 @@ inline bool differs(const StateFunction& x, double t, double h) {
   const double now = x.of_time().value(t);
   return x.of_time().value(t + h) != now || x.of_time().value(t + 0.5 * h) != now;
 }
+/// Returns whether a function of a distributed force changes within h seconds after t while its part is at
+/// rest. Quantities at points of the part are then constant.
+inline bool differs_at_rest(const StateFunction& x, double t, double h) {
+  const std::vector<Signal>& signals = x.signals();
+  const bool of_points = x.reads_state() && !x.formula().reads_time() &&
+                         std::all_of(signals.begin(), signals.end(), [](const Signal& signal) {
+                           return signal.kind == Signal::Kind::at_point;
+                         });
+  return !of_points && differs(x, t, h);
+}
 inline bool differs(const StateVector& x, double t, double h) {
   return differs(x.component[0], t, h) || differs(x.component[1], t, h) || differs(x.component[2], t, h);
 }
@@ -145,11 +155,14 @@ PLIANT_INLINE void Sleeping::find_drives() {
           {f.at.part, [&f](double t, double h) { return sleeping::differs(f.force->force, t, h); }});
   }
   for (const DistributedModel& m : model_.distributed_forces())
-    if (!m.force->density.is_constant() || !m.force->pressure.is_constant())
-      drives_.push_back({m.part, [force = m.force](double t, double h) {
-                           return sleeping::differs(force->density, t, h) ||
-                                  sleeping::differs(force->pressure, t, h);
-                         }});
+    drives_.push_back({m.part, [force = m.force](double t, double h) {
+                         const auto& f = force->density.component;
+                         return std::any_of(f.begin(), f.end(),
+                                            [&](const StateFunction& component) {
+                                              return sleeping::differs_at_rest(component, t, h);
+                                            }) ||
+                                sleeping::differs_at_rest(force->pressure, t, h);
+                       }});
   for (const TorqueModel& torque : model_.torques())
     for (const int end : {torque.part, torque.against})
       if (has(end) && sleeping::is_prescribed(*torque.torque))

@@ -71,7 +71,8 @@ PLIANT_INLINE double Part::compute_inertia(PartConstants& out) const {
     return inertia;
   };
   out.rest_inertia = inertia_at_rest();
-  const double volume = mass_distribution() == nullptr ? total_mass() / density() : volume_at_rest(*this);
+  const bool by_search = mass_distribution() != nullptr && continuum_settings() != nullptr;
+  const double volume = by_search ? volume_at_rest(*this) : total_mass() / density();
   if (given_mass()) {
     const double factor = *given_mass() / total_mass();
     for (Pack& m : points.mass) m *= Pack(factor);

@@ -73,7 +73,7 @@ class Part : public PartEvaluation {
   void compute_size(PartConstants& out) const;
   void use_given_inertia(PartConstants& out) const;
   /// Computes the mass points and the inertia at rest. Returns the volume of a solid (m^3) or the area of a
-  /// shell (m^2).
+  /// shell (m^2), which only elastic material needs: with a mass distribution it takes another search.
   double compute_inertia(PartConstants& out) const;
   void compute_elasticity(double volume, PartConstants& out) const;
 };

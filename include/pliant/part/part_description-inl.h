@@ -272,7 +272,7 @@ PLIANT_INLINE Part& PartDescription::use_diagonal_mass() {
 
 PLIANT_INLINE Part& PartDescription::distribute_mass(MassDistribution distribution) {
   change();
-  if (!distribution) refuse("its mass distribution is no function");
+  if (!distribution) refuse("its mass distribution is an empty function");
   mass_distribution_ = std::make_unique<const MassDistribution>(std::move(distribution));
   return part();
 }
@@ -398,7 +398,7 @@ PLIANT_INLINE void PartDescription::check() const {
   if (given_inertia_ && mass_distribution_)
     refuse("its inertia is given, so that a mass distribution has no effect; give one of them");
   if (diagonal_mass_ && local_settings_)
-    refuse("a part that deforms locally has the coupled mass matrix; do not give it a diagonal one");
+    refuse("a part that deforms locally has the consistent mass matrix; do not give it a diagonal one");
   if (mass_distribution_ && local_settings_ && local_settings_->basis != LocalSettings::Basis::nodes)
     refuse(
         "modes and polynomials have the same density everywhere; use the basis \"nodes\" with a mass "

@@ -78,9 +78,9 @@ class PartDescription {
   /// Sets the mass distribution mu(u), Eq. (11): density() times a function of the material point. Not with
   /// inertia(), nor with local deformation by modes or polynomials.
   Part& distribute_mass(MassDistribution distribution);
-  /// Makes accelerations follow from the diagonal of M, as section 5 of the paper does for speed: velocities
-  /// of different kinds are then not coupled by inertia. This saves no time here, and is for comparisons: the
-  /// energy, which has the whole of M, is not conserved. Not with local deformation.
+  /// Makes accelerations follow from the diagonal of M, section 5 of the paper: translation, rotation and
+  /// parameters are then not coupled by M. This is for comparisons. Energy and momenta are not conserved, and
+  /// a body whose centre of mass is not the origin of its frame falls wrongly. Not with local deformation.
   Part& use_diagonal_mass();
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
   /// of mass (m, body frame) of a rigid part. These values replace the density.

@@ -393,6 +393,9 @@ PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before
 /// Throws the failure of a step that cannot be shorter: the failure of the method if the method fails again,
 /// otherwise a NumericalFailure, because the error exceeds the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
+  const std::string term =
+      dynamics_.diagnose(last_good_.time(), last_good_.q, last_good_.v, last_good_, output_work_);
+  if (!term.empty()) throw NumericalFailure(term + " is not a finite number", last_good_.time());
   integrate();
   const VecX<double> none = VecX<double>::Zero(state_.q.size());
   std::ostringstream message;

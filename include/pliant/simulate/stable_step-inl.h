@@ -100,6 +100,11 @@ inline std::string cause_of(const Model& model, const MotionPlace& place) {
   if (place.is_local) return "the local elasticity of " + name;
   if (place.is_of_parameters) return "the springs and parameters of " + name;
   if (m.island >= 0) return "the oscillation of " + name + " on its joints";
+  const auto& forces = model.distributed_forces();
+  const auto force = std::find_if(forces.begin(), forces.end(),
+                                  [&](const DistributedModel& each) { return each.part == place.part; });
+  if (force != forces.end())
+    return "the distributed force '" + force->force->name + "' and the springs at " + name;
   return "the springs at " + name;
 }
 

@@ -174,6 +174,13 @@ StateFunction state_formula(MultiBody& body, const std::string& text, const Name
     std::optional<Signal> signal;
     const auto at_point = std::find(at_points.begin(), at_points.end(), owner);
     if (quantity.empty() && at_point != at_points.end()) {
+      const auto has_name = [&](const auto& named) { return named->name == owner; };
+      if (std::any_of(body.sensors().begin(), body.sensors().end(), has_name) ||
+          std::any_of(body.inputs().begin(), body.inputs().end(),
+                      [&](const Input& input) { return input.name == owner; }))
+        throw std::invalid_argument("\"" + owner +
+                                    "\" is the name of a quantity at the point, and of a sensor or input; "
+                                    "expected another name of the sensor or input");
       signal.emplace();
       signal->kind = SignalKind::at_point;
       signal->index = static_cast<int>(at_point - at_points.begin());

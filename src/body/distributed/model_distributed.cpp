@@ -1,19 +1,14 @@
 // The set-up of distributed forces: the ports at which they act, and the masses or triangles of these ports.
 #include <stdexcept>
+#include <utility>
 
 #include <pliant/body/model.h>
 #include <pliant/part/mesh/surface.h>
+#include <pliant/part/quadrature/body_points.h>
 
 namespace pliant {
 
 namespace {
-
-Trig<double> lane(const Trig<Pack>& four, int i) {
-  return {four.x[i], four.sign[i], four.log_abs[i]};
-}
-Material<double> lane(const Material<Pack>& four, int i) {
-  return {lane(four.cu, i), lane(four.su, i), lane(four.cv, i), lane(four.sv, i), four.w[i]};
-}
 
 /// Material points with the triangles or the masses (kg) that they carry.
 struct Points {
@@ -34,21 +29,17 @@ Points surface_points(const Part& part, int resolution) {
   return points;
 }
 
-/// Returns the nodes of a part that deforms locally, and otherwise its mass points.
-Points body_points(const Part& part) {
-  if (part.local() != nullptr) return {part.local()->mesh().nodes, {}, part.local()->mesh().mass};
-  const MassPoints& rule = part.mass_points();
-  if (rule.n_points == 0)
-    throw std::invalid_argument("acts on part '" + part.name() +
-                                "', whose \"inertia\" does not say where its mass is; give a density");
-  Points points{{}, {}, VecX<double>(rule.n_points)};
-  for (int k = 0; k < rule.n_points; ++k) {
-    const auto pack = static_cast<std::size_t>(k / Pack::kLanes);
-    const int i = k % static_cast<int>(Pack::kLanes);
-    points.at.push_back(lane(rule.at[pack], i));
-    points.mass[k] = rule.mass[pack][i];
-  }
-  return points;
+/// Returns the nodes of a mesh that carries the mass of the part; otherwise points inside the part.
+Points body_points(const Part& part, int resolution) {
+  if (part.local() != nullptr && part.local()->mesh().mass.size() > 0)
+    return {part.local()->mesh().nodes, {}, part.local()->mesh().mass};
+  if (!has_known_masses(part))
+    throw std::invalid_argument(
+        "part '" + part.name() +
+        "' has a given inertia, which does not say where its mass is; expected a part "
+        "with a density or a mass");
+  BodyPoints points = place_matched_body_points(part, resolution);
+  return {std::move(points.at), {}, std::move(points.mass)};
 }
 
 }  // namespace
@@ -63,17 +54,21 @@ void Model::add_distributed_forces() {
     m.part = number_of(*force->part);
     PartModel& part = parts_[static_cast<std::size_t>(m.part)];
     m.first_port = static_cast<int>(part.ports.size());
+    const bool in_body = force->domain == DistributedForce::Domain::body;
+    const int standard = in_body ? DistributedForce::kBodyResolution : DistributedForce::kSurfaceResolution;
+    const int resolution = force->resolution == 0 ? standard : force->resolution;
+    if (resolution < (in_body ? 3 : 1) || resolution > DistributedForce::kMaxResolution)
+      throw std::invalid_argument(what + " has the resolution " + std::to_string(resolution) +
+                                  "; expected one from " + (in_body ? "3" : "1") + " to " +
+                                  std::to_string(DistributedForce::kMaxResolution));
     Points points;
     try {
-      points = force->domain == DistributedForce::Domain::body
-                   ? body_points(*force->part)
-                   : surface_points(*force->part, force->resolution);
+      points = in_body ? body_points(*force->part, resolution) : surface_points(*force->part, resolution);
     } catch (const std::invalid_argument& fault) {
       throw std::invalid_argument(what + ": " + fault.what());
     }
     m.triangles = std::move(points.triangles);
     m.mass = std::move(points.mass);
-    // Mass points may be outside of the body (w > 1): a few points have the moments of many.
     part.ports.insert(part.ports.end(), points.at.begin(), points.at.end());
     part.port_place.resize(part.ports.size(), -1);
     if (part.local != nullptr)

@@ -16,6 +16,8 @@
 #include <pliant/part/mesh/surface.h>
 #include <pliant/part/part.h>
 
+#include "part/quadrature/match_moments.h"
+
 namespace pliant {
 
 VecX<double> LocalMesh::areas() const {
@@ -29,42 +31,6 @@ VecX<double> LocalMesh::areas() const {
 }
 
 namespace {
-
-/// Returns the moments of order 0, 1 and 2 of a point of unit mass.
-Vec<double, 10> moments(const Vec3<double>& x) {
-  Vec<double, 10> f;
-  f << 1, x[0], x[1], x[2], x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0];
-  return f;
-}
-/// Returns the moments of a part from its inertia.
-Vec<double, 10> moments(const Inertia<double>& whole) {
-  const Mat3<double> I = whole.M.block<3, 3>(3, 3);
-  const Vec3<double> square = 0.5 * I.trace() * Vec3<double>::Ones() - I.diagonal();
-  Vec<double, 10> f;
-  f << whole.mass, whole.moment, square, -I(0, 1), -I(1, 2), -I(2, 0);
-  return f;
-}
-
-/// Changes the nodal masses so that they have the mass, the centre and the second moments of the part. The
-/// relative changes are the smallest ones in the mean square over the mass. Returns the largest remaining
-/// error of a moment, relative to the mass times the largest nodal coordinates in this moment.
-double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>& mass) {
-  const Eigen::Index n = X.rows();
-  const Vec<double, 10> unit = moments(Vec3<double>(X.cwiseAbs().colwise().maxCoeff().transpose()));
-  MatX<double> F(10, n);
-  for (Eigen::Index k = 0; k < n; ++k)
-    F.col(k) = moments(Vec3<double>(X.row(k).transpose())).cwiseQuotient(unit);
-  const Vec<double, 10> wanted = moments(whole).cwiseQuotient(unit), missing = wanted - F * mass;
-  // Minimise sum m c^2 subject to sum m c f = missing. The sums are over nodes, c is the relative change of
-  // the mass m, and f are the moments of a node. The solution is c = f^T y.
-  const Eigen::Matrix<double, 10, 10> A = F * mass.asDiagonal() * F.transpose();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 10, 10>> solver;
-  solver.setThreshold(1e-10);
-  solver.compute(A);
-  const VecX<double> change = F.transpose() * solver.solve(missing);
-  mass.array() *= 1 + change.array();
-  return (wanted - F * mass).cwiseAbs().maxCoeff() / whole.mass;
-}
 
 /// Returns the barycentric weights of the point of a triangle that is nearest to x.
 Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<double>, 3>& corner) {
@@ -205,15 +171,21 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.mass.array() *= mass_multiples(part, *part.mass_distribution(), mesh.nodes).array();
   mesh.density = part.total_mass() / mesh.mass.sum();
   mesh.mass *= mesh.density;
-  constexpr double rounding = 1e-10;
   const double missing = match_moments(part.rest_inertia(), mesh.X, mesh.mass);
   const std::string of_mesh =
       "part '" + part.name() + "': a mesh of resolution " + std::to_string(settings.resolution);
-  if (!(missing <= rounding)) {
+  if (!(missing <= kMatched)) {
     std::ostringstream message;
     message << of_mesh
             << " cannot have the mass, the centre and the inertia of the part: a relative share of "
             << missing << " of a moment is missing; expected another resolution, or a part that is less thin";
+    throw LocalFault(message.str());
+  }
+  if (Eigen::Index k = 0; part.mass_distribution() != nullptr && !(mesh.mass.minCoeff(&k) > 0)) {
+    const Vec3<double> X = mesh.X.row(k);
+    std::ostringstream message;
+    message << of_mesh << " has a node without mass at X = " << X[0] << ", Y = " << X[1] << ", Z = " << X[2]
+            << "; expected a mass distribution that is above 0 at each node";
     throw LocalFault(message.str());
   }
   if (!(mesh.mass.minCoeff() > 0)) throw LocalFault(of_mesh + " is too coarse for its masses to be positive");

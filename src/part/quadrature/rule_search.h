@@ -7,6 +7,7 @@
 //   kEach           number of integrands for each state
 //   kTolerance      relative change by doubling at which a rule has converged
 //   kRequired       relative change that is accepted if finer rules do not reduce it
+//   last_level()    the last level of refinement, at most kLastLevel
 //   thinning()      accuracy of thinning
 //   n_states()      number of states at which a rule is tested
 //   shares(columns, first, end)  the contribution of each node (row) to each integral (column) at the states
@@ -139,7 +140,7 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
   };
   double min_change = kInfinity;
   int best = 0;
-  for (int level = 0; level <= kLastLevel; ++level) {
+  for (int level = 0; level <= integrands.last_level(); ++level) {
     at(level + 2);
     const Integrals &now = at(level), &finer = at(level + 2);
     // The change of a small integral is relative to a tenth of the mean size of all integrals.
@@ -156,7 +157,7 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
     if (min_change <= Integrands::kRequired && level >= best + 2) return best;
   }
   remaining = std::max(remaining, min_change);
-  return kLastLevel;
+  return integrands.last_level();
 }
 
 /// Removes the nodes of one direction that the integrals do not need, and adjusts the weights of the other

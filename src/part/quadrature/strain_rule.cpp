@@ -98,6 +98,7 @@ class StrainIntegrands {
   static constexpr const char* subject = "strain energy";
   static constexpr int kEach = 4;
   static constexpr double kTolerance = kStrainTolerance, kRequired = 1e2 * kStrainTolerance;
+  static constexpr int last_level() { return kLastLevel; }
 
   StrainIntegrands(const RestShape& shape, const ContinuumLaw& law)
       : shape_(shape), law_(law), ranges_(shape.part) {

@@ -311,6 +311,11 @@ void PartReader::prepare() {
                                         " kg and a moment of inertia of " + brief(moment) +
                                         " kg m^2; expected both from 1e-100 to 1e100");
   }
+  constexpr double large = 1e-6;
+  if (const double error = part_->mass_points().relative_error;
+      error > large && part_->mass_distribution() != nullptr)
+    faults_.warn(r_.at("mass_distribution"), "its mass, centre and inertia have a relative error of about " +
+                                                 brief(error) + ", because it varies fast or jumps");
   prepared_ = true;
 }
 

@@ -1,4 +1,5 @@
 // The records of a scene file, from the root down: parts and materials, time, loads, output and pictures.
+#include <pliant/body/distributed/distributed_force.h>
 #include <pliant/scene/schema/scene_schema.h>
 
 #include <pliant/method/error_scale.h>
@@ -152,16 +153,18 @@ Record part_record() {
                 "Thickness of a shell. The density is then per volume (kg/m^3)."),
        optional("local", record(local_record()), "Local deformation; when absent, there is none."),
        optional("mass", number(above(0), "kg"), "Total mass, instead of the density."),
-       optional("mass_matrix",
-                choice({{"consistent", "M of Eq. (11)"},
-                        {"diagonal",
-                         "only the diagonal of M, as in section 5 of the paper; for comparisons, "
-                         "because energy is then not conserved"}}),
-                "Mass matrix from which accelerations follow.", "\"consistent\""),
+       optional(
+           "mass_matrix",
+           choice(
+               {{"consistent", "M of Eq. (11)"},
+                {"diagonal",
+                 "only the diagonal of M, as in section 5 of the paper. For comparisons: energy and momenta "
+                 "are not conserved, and bodies whose centre of mass is not the origin fall wrongly"}}),
+           "Mass matrix from which accelerations follow.", "\"consistent\""),
        optional(
            "mass_distribution", text(1).expecting("a formula of X, Y, Z, u, v and w"),
-           "Formula that multiplies the density at each material point: of its place at rest in the frame "
-           "of the part, X, Y, Z (m), and of its coordinates u, v (rad) and w."),
+           "Formula that multiplies the density at each material point. X, Y, Z: the place at rest in the "
+           "frame of the part (m). u, v (rad) and w: the material coordinates."),
        optional("inertia", record(inertia_record()), "Mass and inertia of a rigid part."),
        optional("position", vector3("m"), "Position of the origin of the body frame at time 0.", "[0, 0, 0]"),
        optional("orientation", orientation(), "Orientation of the body frame at time 0.",
@@ -253,31 +256,35 @@ Record torque_record() {
 }
 
 Record surface_force_record() {
-  return {"surface_force",
-          "A force per area on the present surface of a part, for example wind or buoyancy. Its formulas may "
-          "also read the point x, y, z, its velocity vx, vy, vz, the outward normal nx, ny, nz, the velocity "
-          "along it, vn, and the place of the point at rest in the frame of the part, X, Y, Z.",
-          {optional("name", name(), "Name in the outputs."),
-           required("part", name(), "Name of the part.", "\"wing\""),
-           optional("traction", state_vector("N/m^2"), "The force per area, along the world's axes.",
-                    "[0, 0, \"-2 * vz\"]"),
-           optional("pressure", state_function("Pa", unbounded()),
-                    "Pressure, whose force is along the inward normal.", "\"9810 * max(-z, 0)\""),
-           optional("resolution", integer(between(1, 512)),
-                    "Number of edges of triangles along an eighth of a circle; a part with \"local\" has the "
-                    "triangles of its mesh.",
-                    "6")}};
+  return {
+      "surface_force",
+      "A force per area on the present surface of a part, for example wind or buoyancy. Its formulas also "
+      "read quantities of the point. x, y, z: the point. vx, vy, vz: its velocity. nx, ny, nz: the outward "
+      "normal. vn: the velocity along it. X, Y, Z: the place at rest in the frame of the part.",
+      {optional("name", name(), "Name in the outputs."),
+       required("part", name(), "Name of the part.", "\"wing\""),
+       optional("traction", state_vector("N/m^2"), "The force per area, along the world's axes.",
+                "[0, 0, 0]"),
+       optional("pressure", state_function("Pa", unbounded()),
+                "Pressure, whose force is along the inward normal, for example \"9810 * max(-z, 0)\".", "0"),
+       optional("resolution", integer(between(1, DistributedForce::kMaxResolution)),
+                "Number of edges of triangles along an eighth of a circle. A part with \"local\" has the "
+                "triangles of its mesh.",
+                std::to_string(DistributedForce::kSurfaceResolution))}};
 }
 
 Record body_force_record() {
-  return {
-      "body_force",
-      "A force per mass in a part. Its formulas may also read the point x, y, z, its velocity vx, vy, vz, "
-      "and the place of the point at rest in the frame of the part, X, Y, Z.",
-      {optional("name", name(), "Name in the outputs."),
-       required("part", name(), "Name of the part.", "\"ball\""),
-       required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
-                "[\"-4 * x\", 0, 0]")}};
+  return {"body_force",
+          "A force per mass in a part. Its formulas also read quantities of the point. x, y, z: the point. "
+          "vx, vy, vz: its velocity. X, Y, Z: the place at rest in the frame of the part.",
+          {optional("name", name(), "Name in the outputs."),
+           required("part", name(), "Name of the part.", "\"ball\""),
+           required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
+                    "[\"-4 * x\", 0, 0]"),
+           optional("resolution", integer(between(3, DistributedForce::kMaxResolution)),
+                    "Number of points along each direction of a smooth panel of the shape. A part with nodes "
+                    "or modes has the nodes of its mesh.",
+                    std::to_string(DistributedForce::kBodyResolution))}};
 }
 
 Record track_record() {

@@ -30,8 +30,8 @@ std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, co
 
 /// Returns the function of a formula of t and of named quantities, for example "-20 * ball.z". Throws
 /// FormulaError (math/formula.h) for an error in the text or an unknown name, and std::invalid_argument for
-/// more than kMaxSignals quantities. at_points: the quantities_at_points() of a distributed force; they come
-/// before sensors of the same name.
+/// more than kMaxSignals quantities. at_points: the quantities_at_points() of a distributed force; a sensor
+/// or input with the name of one that the formula reads is an error.
 StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {},
                             const std::vector<std::string>& at_points = {});
 

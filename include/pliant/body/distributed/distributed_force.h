@@ -22,9 +22,11 @@ struct DistributedForce {
   Domain domain = Domain::surface;
   StateVector density;     ///< N/m^2 on the surface, N/kg in the body; world
   StateFunction pressure;  ///< N/m^2; its force is along the inward normal. Domain::surface only
-  /// Resolution of the triangles on the surface (part/mesh/surface.h) of a part without local deformation. A
-  /// part that deforms locally has the triangles of its mesh.
-  int resolution = 6;
+  /// On the surface: the resolution of the triangles (part/mesh/surface.h), from 1 to kMaxResolution. In the
+  /// body: the number of points in each panel (part/quadrature/body_points.h), from 3 to kMaxResolution. A
+  /// part that deforms at nodes or by modes has the triangles and nodes of its mesh. 0: the default.
+  int resolution = 0;
+  static constexpr int kSurfaceResolution = 6, kBodyResolution = 4, kMaxResolution = 64;  ///< 6, 4: defaults
 };
 
 /// Returns the names of the quantities at a point that the formulas of a distributed force may read, in the

@@ -26,7 +26,9 @@ struct MassPoints {
   std::string rule;  ///< "affine", "sections", "rings", "full"
   int level = 0;     ///< level of refinement at which the search along the last direction (z or u) stopped
   /// Relative change of the integrals when the nodes along a direction are doubled once more. The value is 0
-  /// if this change is at most 2e-14, or if it is at most 1e-12 and finer rules do not halve it.
+  /// if this change is at most 2e-14, or if it is at most 1e-12 and finer rules do not halve it. With a mass
+  /// distribution, the difference of mass, centre and second moments from those of an independent grid
+  /// (body_points.h) counts too, if it is above 1e-7.
   double relative_error = 0;
 };
 
