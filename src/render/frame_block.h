@@ -13,7 +13,7 @@ namespace pliant {
 /// The sizes of the targets of the passes of a picture.
 struct PassSizes {
   int width = 0, height = 0;                   ///< of the picture, pixels
-  int samples = 2;                             ///< samples of a pixel along each axis: 1 or 2
+  double samples = 2;                          ///< samples of a pixel along each axis: 2, or at most 1
   int shadow_side = 2048, contact_side = 128;  ///< of the square maps, texels
   bool occlusion = true;                       ///< whether bodies hide the sky from the ground
 };

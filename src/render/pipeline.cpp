@@ -24,6 +24,11 @@ Eigen::Vector3f linear(const Eigen::Vector3f& srgb) {
   return srgb.unaryExpr(&linear_light);
 }
 
+/// Returns the number of samples along a side of a picture, pixels.
+int samples_along(int side, const PassSizes& sizes) {
+  return std::max(1, static_cast<int>(std::lround(sizes.samples * side)));
+}
+
 template <class Things>
 void check_colors(const Things& things, const char* kind) {
   for (std::size_t i = 0; i < things.size(); ++i)
@@ -71,8 +76,8 @@ PassSizes pass_sizes(int width, int height) {
 Pipeline::Pipeline(const GlContext& context, const PassSizes& sizes)
     : gl_(context),
       sizes_(sizes),
-      samples_wide_(sizes.samples * sizes.width),
-      samples_high_(sizes.samples * sizes.height),
+      samples_wide_(samples_along(sizes.width, sizes)),
+      samples_high_(samples_along(sizes.height, sizes)),
       shadow_program_(gl_, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
       height_program_(gl_, "height", shaders::kHeightVertex, shaders::kDepthFragment),
       contact_program_(gl_, "contact", shaders::kContactVertex, shaders::kContactFragment),
@@ -117,12 +122,14 @@ void Pipeline::check_target() {
   if (samples_wide_ > largest || samples_high_ > largest)
     throw std::runtime_error("a picture of " + size +
                              " pixels is too large for this OpenGL; the largest side is " +
-                             std::to_string(largest / sizes_.samples) + " pixels");
+                             std::to_string(static_cast<int>(largest / sizes_.samples)) + " pixels");
   gl_.bind_texture(gl::kTexture2d, color_.name());
   gl_.tex_image_2d(gl::kTexture2d, 0, static_cast<gl::Int>(gl::kRgba8), samples_wide_, samples_high_, 0,
                    gl::kRgba, gl::kUnsignedByte, nullptr);
-  gl_.tex_parameter(gl::kTexture2d, gl::kMinFilter, gl::kNearest);
-  gl_.tex_parameter(gl::kTexture2d, gl::kMagFilter, gl::kNearest);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMinFilter, gl::kLinear);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMagFilter, gl::kLinear);
+  gl_.tex_parameter(gl::kTexture2d, gl::kWrapS, gl::kClampToEdge);
+  gl_.tex_parameter(gl::kTexture2d, gl::kWrapT, gl::kClampToEdge);
   gl_.bind_renderbuffer(gl::kRenderbuffer, depth_.name());
   gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kDepthComponent24, samples_wide_, samples_high_);
   gl_.bind_framebuffer(gl::kFramebuffer, target_.name());

@@ -12,8 +12,8 @@ namespace {
 
 PassSizes sizes_of(int width, int height, WindowRenderer::Quality quality) {
   PassSizes sizes = pass_sizes(width, height);
-  if (quality == WindowRenderer::Quality::draft) {
-    sizes.samples = 1;
+  sizes.samples = WindowRenderer::samples(quality);
+  if (quality != WindowRenderer::Quality::full) {
     sizes.shadow_side = 1024;
     sizes.contact_side = 32;
     sizes.occlusion = false;
@@ -35,7 +35,7 @@ class WindowRenderer::Impl {
 
   GlContext context;
   gl::Functions gl;
-  std::array<Sized, 2> by_quality;
+  std::array<Sized, kQualities> by_quality;
   Pipeline* last = nullptr;  // that drew the last picture
 };
 

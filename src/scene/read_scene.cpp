@@ -205,14 +205,20 @@ class SceneReader {
       faults_.unknown(name, "material", names);
   }
 
-  /// Returns the objects of a list and reports names that are given twice.
+  /// Returns the objects of a list and reports names that are given twice, also those that a ring makes.
   std::vector<Reader> named(const std::string& list) {
     std::vector<Reader> all = root_.objects(list);
     std::map<std::string, const JsonValue*> names;
     for (const Reader& r : all) {
       if (!r.given("name")) continue;
-      const auto [first, is_new] = names.try_emplace(r.text("name"), &r.at("name"));
-      if (!is_new) faults_.twice(*first->second, r.at("name"));
+      std::vector<std::string> own = ring_names(r);
+      own.push_back(r.text("name"));
+      for (const std::string& name : own) {
+        const auto [first, is_new] = names.try_emplace(name, &r.at("name"));
+        if (is_new) continue;
+        faults_.twice(*first->second, r.at("name"));
+        break;
+      }
     }
     return all;
   }

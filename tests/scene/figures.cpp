@@ -58,12 +58,22 @@ TEST_CASE("gravity, forces and springs alone drive the scenes of figures 1, 3 an
   for (const char* name : {"pull", "gallery", "balloons", "springboard"}) {
     CAPTURE(name);
     const Json scene = document(name);
+    for (const char* key : {"motion", "torques", "surface_forces", "body_forces", "sensors"})
+      CHECK_FALSE(scene.contains(key));
+    if (scene.contains("gravity"))
+      for (const Json& g : scene.at("gravity")) CHECK(g.is_number());
+    for (const Json& plane : scene.value("contact", Json::object()).value("planes", Json::array()))
+      for (const char* key : {"point", "normal"})
+        for (const Json& x : plane.value(key, Json::array())) CHECK(x.is_number());
     for (const Json& part : scene.at("parts")) {
       CAPTURE(part.at("name"));
       CHECK_FALSE(part.contains("motion"));
       for (const auto& [key, value] : part.at("parameters").items()) {
         CAPTURE(key);
-        if (!value.is_object()) continue;
+        if (!value.is_object()) {
+          CHECK(value.is_number());
+          continue;
+        }
         CHECK(value.at("rest").is_number());
         CHECK_FALSE(value.contains("drive"));
         CHECK_FALSE(value.contains("initial"));

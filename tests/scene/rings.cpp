@@ -48,6 +48,11 @@ double widest_gap(const Simulation& simulation) {
   return widest;
 }
 
+/// Returns the place of a point of a part at rest, m, in the frame of the part.
+Vec3<double> place_at_rest(const Point& point) {
+  return point.part->s({point.material}, point.part->parameters().rest()).col(0);
+}
+
 /// Two rigid parts swing on a ball joint. joint: the joint between them.
 std::string double_bar(const std::string& joint) {
   return R"json({"parts": [
@@ -90,7 +95,57 @@ TEST_CASE("a ring makes ball joints NAME.1, NAME.2, ... on equal circles in both
     CHECK(joint.name() == "neck." + std::to_string(k + 1));
     CHECK(joint.type() == std::string("ball"));
     CHECK(simulation.model().gap(simulation.state(), static_cast<int>(k + 1)) <= 1e-15);
+    // The axis is that of z, and the first direction perpendicular to it that of x.
+    const double angle = kPi / 2 * static_cast<double>(k);
+    const Vec3<double> offset(0.08 * std::cos(angle), 0.08 * std::sin(angle), 0);
+    CHECK((place_at_rest(joint.points()[0]) - Vec3<double>(0, 0, 0.35) - offset).norm() <= 1e-15);
+    CHECK((place_at_rest(joint.points()[1]) - Vec3<double>(0, 0, -0.35) - offset).norm() <= 1e-15);
   }
+}
+
+TEST_CASE("a ring with a tilted axis is a circle perpendicular to it", "[ring]") {
+  const auto scene =
+      scene_of(double_bar(R"json({"type": "ball", "name": "neck", )json" + kEnds +
+                          R"json(, "ring": {"count": 5, "radius": 0.06, "axis": [1, 1, 1]}})json"));
+  const Vec3<double> axis = Vec3<double>::Constant(1 / std::sqrt(3.0));
+  for (const auto& joint : scene->body.joints()) {
+    if (joint->name().rfind("neck.", 0) != 0) continue;
+    const Vec3<double> offset = place_at_rest(joint->points()[1]) - Vec3<double>(0, 0, -0.35);
+    CHECK(offset.norm() == Approx(0.06).epsilon(1e-13));
+    CHECK(std::abs(offset.dot(axis)) <= 1e-15);
+  }
+}
+
+TEST_CASE("rings that cannot hold are refused: tiny ones, and unequal ones of rigid shells", "[ring]") {
+  const auto messages_of = [](const std::string& text) {
+    Diagnostics diagnostics;
+    try {
+      parse_scene("ring.json", text, {}, diagnostics);
+    } catch (const SceneError&) {
+    }
+    return diagnostics.text();
+  };
+  const auto ring = [](const char* radius) {
+    return R"json({"type": "ball", "name": "neck", )json" + kEnds +
+           R"json(, "ring": {"count": 3, "radius": )json" + radius + "}}";
+  };
+  CHECK_THAT(messages_of(double_bar(ring("1e-6"))), test::has_text("expected a radius of at least"));
+  CHECK(messages_of(double_bar(ring("1e-5"))).empty());
+  const auto shells = [](const std::string& of_lower) {
+    return R"json({"parts": [
+      {"name": "upper", "shape": "ellipsoid", "shell": true, "density": 5,
+       "parameters": {"a1": 0.4, "a2": 0.4, "a3": 0.2}, "position": [0, 0, 1.6]},
+      {"name": "lower", "shape": "ellipsoid", "shell": true, "density": 5, "parameters": {)json" +
+           of_lower + R"json(}, "position": [0, 0, 1.0]}],
+     "joints": [{"type": "ball", "name": "neck", "from": {"part": "lower", "at": {"direction": [0, 0, 1]}},
+       "to": {"part": "upper", "at": {"direction": [0, 0, -1]}}, "ring": {"count": 3, "radius": 0.1}}]})json";
+  };
+  CHECK_THAT(messages_of(shells(R"json("a1": 0.2, "a2": 0.4, "a3": 0.4)json")),
+             test::has_text("No motion of rigid parts closes the ring"));
+  CHECK(messages_of(shells(R"json("a1": 0.4, "a2": 0.4, "a3": 0.2)json")).empty());
+  CHECK_THAT(messages_of(
+                 double_bar(R"json({"type": "ball", "name": "neck.2", )json" + kEnds + "}, " + ring("0.08"))),
+             test::has_text("name given twice"));
 }
 
 TEST_CASE("three points hold two rigid parts as a weld does", "[ring]") {

@@ -1,8 +1,9 @@
-// The paper's Fig. 5: twelve point-to-point joints, and nothing else, assemble and hold a snowman, which hops
-// along a prescribed path by changes of its own shape and then stands still.
+// The paper's Fig. 5: twelve point-to-point joints assemble and hold a snowman, which hops along a prescribed
+// path by changes of its own shape and then stands still.
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,7 @@ using namespace pliant;
 
 namespace {
 
-/// Times at which the snowman is assembled, has landed, and starts to hop, s.
+/// Times at which the snowman is assembled and has landed, s. It begins to hop after the latter.
 constexpr double kAssembled = 3.1, kLanded = 4.9;
 
 Vec3<double> position(const Simulation& simulation, int part) {
@@ -40,8 +41,9 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
   Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
   const Model& model = simulation.model();
 
-  // Twelve point-to-point joints between parts hold it; no spring, force, torque or prescribed motion moves
-  // it.
+  // Twelve point-to-point joints between parts hold it. The drives of three parameters of the base move it;
+  // springs in the joints of hat, nose and arms hold the orientations of these parts. There is no other
+  // spring, force or torque, and no prescribed motion.
   REQUIRE(model.joints().size() == 12);
   for (const JointModel& joint : model.joints()) {
     CHECK(joint.joint->type() == std::string("ball"));
@@ -50,6 +52,17 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
   CHECK(model.springs().empty());
   CHECK(model.forces().empty());
   CHECK(model.torques().empty());
+  CHECK(model.distributed_forces().empty());
+  std::set<std::string> of_parameters, of_joints;
+  for (const DriveModel& drive : model.drives()) {
+    const std::string& name = drive.drive->name;
+    if (drive.drive->is_passive())
+      of_joints.insert(name.substr(0, name.find('.')));
+    else
+      of_parameters.insert(name);
+  }
+  CHECK(of_parameters == std::set<std::string>{"base.a3", "base.shear.sx", "base.shear.sy"});
+  CHECK(of_joints == std::set<std::string>{"hat", "nose", "shoulder_left", "shoulder_right"});
   for (const PartModel& part : model.parts()) {
     CHECK(part.q0 >= 0);
     CHECK(part.n_s > 0);

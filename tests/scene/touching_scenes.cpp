@@ -227,7 +227,7 @@ TEST_CASE(
     CHECK(flaps[i].width() > 0.5);
     CHECK(bend_range[i].width() > 0.2);
   }
-  CHECK(before.z() > take_off.z() + 0.2);  // the air on its wings lifts the dragonfly and drives it ahead
+  CHECK(before.z() > take_off.z() + 0.2);  // the air on its wings drives the dragonfly up and ahead
   CHECK(before.x() > take_off.x() + 0.2);
   CHECK(std::abs(before.y()) < 0.3);  // the controller holds its course
   CHECK(after_impact.largest > before_impact.largest + 0.1);

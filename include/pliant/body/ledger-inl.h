@@ -48,11 +48,12 @@ PLIANT_INLINE void Dynamics::add_energy(const DriveModel& m, const Evaluation<do
 
 PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v,
                                       const std::vector<int>& parts, Workspace<double>& work) const {
-  evaluate_masses(q, v, parts, work);
   Ledger ledger;
-  for (const int i : parts)
+  for (const int i : parts) {
+    evaluate_frame(q, v, i, work);
     add_energy(t, model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)],
                ledger);
+  }
   auto is_listed = [&](const PortRef& ref) {
     return std::find(parts.begin(), parts.end(), ref.part) != parts.end();
   };

@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// The line behind a tracked point, as points in the order of time. Points of the motion that are near each
-/// other, or near the line between two others, are left out.
+/// The line behind a tracked point, as points in the order of time. Points of the motion that are near the
+/// point before them are left out.
 class TrackLine {
  public:
   /// model: must outlive the line.

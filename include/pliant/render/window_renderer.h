@@ -13,11 +13,19 @@ namespace pliant {
 /// The context of the window must be current on the calling thread during all calls.
 class WindowRenderer {
  public:
+  /// Drafts are for pictures that change: they have a coarse shadow map and no occlusion of the sky.
   enum class Quality {
-    /// One sample for each pixel, a coarse shadow map and no occlusion of the sky, for pictures that change.
-    draft,
-    full  ///< the quality of Renderer
+    half_draft,        ///< a sample for 2 x 2 pixels
+    two_thirds_draft,  ///< 2 x 2 samples for 3 x 3 pixels
+    draft,             ///< a sample for each pixel
+    full               ///< the quality of Renderer
   };
+  static constexpr int kQualities = 4;
+  /// Returns the number of samples along the side of a pixel.
+  static constexpr double samples(Quality quality) {
+    constexpr double of[kQualities] = {1.0 / 2, 2.0 / 3, 1, 2};
+    return of[static_cast<int>(quality)];
+  }
 
   /// loader: finds the GL entry points of the context. Throws std::runtime_error if the context is not OpenGL
   /// 3.3 or later.

@@ -233,15 +233,18 @@ const char* const kPresentFragment = R"(
 uniform sampler2D samples;
 out vec4 result;
 void main() {
-  int side = int(2.0 * viewport.w);
-  ivec2 corner = ivec2(gl_FragCoord.xy) * side;
   vec3 light = vec3(0.0);
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      vec3 root = texelFetch(samples, corner + ivec2(x, y), 0).rgb;
-      light += root * root;
-    }
-  light /= float(side * side);
+  if (viewport.w < 1.0) {
+    vec3 root = texture(samples, gl_FragCoord.xy * 2.0 * viewport.w / viewport.xy).rgb;
+    light = root * root;
+  } else {
+    ivec2 corner = ivec2(gl_FragCoord.xy) * 2;
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 2; ++x) {
+        vec3 root = texelFetch(samples, corner + ivec2(x, y), 0).rgb;
+        light += 0.25 * root * root;
+      }
+  }
   vec3 high = 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055;
   result = vec4(mix(high, 12.92 * light, vec3(lessThanEqual(light, vec3(0.0031308)))), 1.0);
 }

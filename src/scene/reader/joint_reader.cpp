@@ -121,6 +121,14 @@ bool has_ring(const Reader& r) {
   return r.record().find("ring") != nullptr && r.json().find("ring") != nullptr;
 }
 
+std::vector<std::string> ring_names(const Reader& r) {
+  if (!has_ring(r) || !r.given("ring") || !r.object("ring").given("count")) return {};
+  std::vector<std::string> names;
+  for (int k = 1; k <= r.object("ring").integer("count"); ++k)
+    names.push_back(r.text("name") + "." + std::to_string(k));
+  return names;
+}
+
 std::vector<Joint*> read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
                                MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");

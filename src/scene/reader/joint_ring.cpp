@@ -1,8 +1,10 @@
 #include "joint_ring.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +18,11 @@ namespace {
 
 /// A point with w - 1 up to this number is on the surface; w is the radial coordinate.
 constexpr double kOnSurface = 1e-9;
+/// Smallest radius as a share of the size of a part. The points of smaller rings hold the orientation with
+/// rounding errors only.
+constexpr double kSmallestRadius = 1e-5;
+/// Largest difference of equal polygons, as a share of the radius.
+constexpr double kEqual = 1e-6;
 
 /// Returns the point at an offset (m) from a point, in the frame of its part at rest or in the world; nothing
 /// if the part has no point there.
@@ -38,6 +45,31 @@ Eigen::Quaterniond orientation_at_start(const Point& end) {
   return end.part == nullptr ? Eigen::Quaterniond::Identity() : end.part->R0();
 }
 
+/// Returns the place of a point at rest in the frame of its part, or in the world, m.
+Vec3<double> place_at_rest(const Point& point) {
+  if (point.part == nullptr) return point.world.value(0);
+  return point.part->s({point.material}, point.part->parameters().rest()).col(0);
+}
+
+bool is_rigid(const Part* part) {
+  return part == nullptr || (part->n_s() == 0 && part->local() == nullptr);
+}
+
+/// Returns the largest difference of the distances of a point from the first three points on the side `from`
+/// and on the side `to`, m.
+double difference_of_polygons(const std::vector<JointSetting>& joints) {
+  std::vector<Vec3<double>> from, to;
+  for (const JointSetting& joint : joints) {
+    from.push_back(place_at_rest(joint.from));
+    to.push_back(place_at_rest(joint.to));
+  }
+  double largest = 0;
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    for (std::size_t first = 0; first < std::min<std::size_t>(3, joints.size()); ++first)
+      largest = std::max(largest, std::abs((from[k] - from[first]).norm() - (to[k] - to[first]).norm()));
+  return largest;
+}
+
 }  // namespace
 
 std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& setting, SceneFaults& faults) {
@@ -54,6 +86,14 @@ std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& se
   const Vec3<double> other = std::abs(axis[0]) < 0.9 ? Vec3<double>::UnitX() : Vec3<double>::UnitY();
   const Vec3<double> e_1 = (other - axis * axis.dot(other)).normalized(), e_2 = axis.cross(e_1);
   const double radius = r.number("radius");
+  for (const Point* end : {&setting.from, &setting.to})
+    if (end->part != nullptr && radius < kSmallestRadius * end->part->size()) {
+      std::ostringstream message;
+      message << "the ring is too small to hold the orientation of part \"" << end->part->name()
+              << "\"; expected a radius of at least " << kSmallestRadius * end->part->size() << " m";
+      faults.value(r.at("radius"), message.str());
+      return {};
+    }
   const auto count = static_cast<int>(r.integer("count"));
   std::vector<JointSetting> joints;
   for (int k = 0; k < count; ++k) {
@@ -72,6 +112,15 @@ std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& se
     joint.from = *from;
     joint.to = *to;
     joints.push_back(joint);
+  }
+  const double difference = difference_of_polygons(joints);
+  if (difference > kEqual * radius && is_rigid(setting.from.part) && is_rigid(setting.to.part)) {
+    std::ostringstream message;
+    message << "distances between its points differ by " << difference
+            << " m on the two sides, because points of a shell are on its surface. No motion of rigid parts "
+               "closes the ring; expected solid parts, or parts that deform";
+    faults.place(r.json(), message.str());
+    return {};
   }
   return joints;
 }

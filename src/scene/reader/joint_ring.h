@@ -17,9 +17,10 @@ namespace pliant {
 ///   in the world),
 /// with X the point of the setting. Those of the side `from` have the same directions if the part of `from`
 /// has the orientation setting.rotation, or else that of time 0, relative to the part of `to`. On both sides
-/// they are therefore the corners of equal polygons. Points of a shell are moved to its surface. r: an object
-/// of ring_record(). If a point is outside of its part, or if a point of the world moves, the fault is
-/// reported and the result is empty.
+/// they are therefore the corners of equal polygons, except that points of a shell are moved to its surface.
+/// r: an object of ring_record(). A fault is reported, and the result is empty, if a point is outside of its
+/// part, if a point of the world moves, if the radius is tiny, or if both parts are rigid and the polygons
+/// differ.
 std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& setting, SceneFaults& faults);
 
 }  // namespace pliant

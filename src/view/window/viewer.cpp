@@ -100,8 +100,12 @@ bool Viewer::draw() {
   }
   full_ = !moved;
   renderer_.draw(motion_.shown().picture(), width_, height_,
-                 full_ ? WindowRenderer::Quality::full : WindowRenderer::Quality::draft);
+                 full_ ? WindowRenderer::Quality::full : draft_.quality());
   return true;
+}
+
+void Viewer::add_picture_time(double seconds) {
+  if (!full_) draft_.add(seconds);
 }
 
 bool Viewer::is_idle() const {

@@ -7,6 +7,7 @@
 #include <pliant/io/format/image.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/render/window_renderer.h>
+#include <pliant/view/draft_quality.h>
 
 #include "motion.h"
 
@@ -35,10 +36,13 @@ class Viewer {
   /// whether the picture is new. The panel is drawn after it.
   bool draw();
   void add_panel();
+  /// Counts the wall time of the last new picture and its panel (s), which sets the quality of the next.
+  void add_picture_time(double seconds);
   /// Whether the next call of draw() can wait for an input.
   bool is_idle() const;
   const std::string& selected() const { return selected_; }
   WindowRenderer& renderer() { return renderer_; }
+  WindowRenderer::Quality draft() const { return draft_.quality(); }  ///< of pictures of a motion
   int width() const { return width_; }
   int height() const { return height_; }
   Motion& motion() { return motion_; }
@@ -60,6 +64,7 @@ class Viewer {
   MouseButton button_ = MouseButton::left;
   Vec3<double> depth_ = Vec3<double>::Zero();  // the dragged point at the start of the drag, m
   std::string selected_, message_;             // name of the part that was clicked last
+  DraftQuality draft_;
   bool by_strain_ = false, changed_ = true, full_ = false;
   WallClock::time_point moved_ = WallClock::now();  // last change of the picture
 };

@@ -1,5 +1,6 @@
 // The window: GLFW for its context and inputs, Dear ImGui for its panel, and the loop of its pictures.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -156,16 +157,22 @@ void draw_pictures(GLFWwindow* window, Viewer& viewer, const ViewOptions& option
     const WallClock::time_point started = WallClock::now();
     if (script && !script->perform(viewer, out)) break;
     if (options.bench > 0 && seconds_since(start) >= options.bench) break;
-    if (viewer.draw()) ++pictures;
+    const bool is_new = viewer.draw();
     panel.draw(viewer);
     glfwSwapBuffers(window);
+    if (is_new) {
+      ++pictures;
+      viewer.add_picture_time(seconds_since(started));
+    }
     wait_for_inputs(viewer, started);
   }
   if (!(options.bench > 0)) return;
   const double wall = seconds_since(start);
   out << viewer.renderer().device() << ", " << viewer.width() << " x " << viewer.height() << ": "
-      << static_cast<double>(pictures) / wall << " pictures per second; simulated time / wall time "
-      << (viewer.motion().time() - start_time) / wall << "\n";
+      << static_cast<double>(pictures) / wall << " pictures per second with "
+      << std::pow(WindowRenderer::samples(viewer.draft()), 2)
+      << " samples per pixel; simulated time / wall time " << (viewer.motion().time() - start_time) / wall
+      << "\n";
   viewer.motion().report(out);
 }
 

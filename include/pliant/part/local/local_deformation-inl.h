@@ -43,7 +43,10 @@ inline MatX<double> inverse_of_compliance(const MatX<double>& A) {
   const MatX<double> scaled = scale.asDiagonal() * A * scale.asDiagonal();
   constexpr double well_conditioned = 1e-8;
   const Eigen::LLT<MatX<double>> factor(scaled);
-  if (factor.info() == Eigen::Success && factor.rcond() > well_conditioned)
+  // The condition number of a positive definite matrix with a unit diagonal is below 4 / determinant.
+  const double root = factor.matrixLLT().diagonal().prod();
+  if (factor.info() == Eigen::Success &&
+      (root * root > 4 * well_conditioned || factor.rcond() > well_conditioned))
     return scale.asDiagonal() * factor.solve(MatX<double>(scale.asDiagonal()));
   auto [inverse, vectors] = symmetric_eigenpairs(scaled);
   for (double& value : inverse) value = value > smallest ? 1 / value : 0;
