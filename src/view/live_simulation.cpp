@@ -22,6 +22,19 @@ Vec3<double> GrowingPath::last() const {
   return {component[0]->values().back(), component[1]->values().back(), component[2]->values().back()};
 }
 
+namespace {
+
+/// Adds the keys of the next interval, from `now` to `next` (s), to a path that goes to a value. Does nothing
+/// if the path has this value already.
+void extend(LinearKeys& path, double value, double now, double next) {
+  const double last = path.values().back();
+  if (value == last) return;
+  if (path.times().back() < now) path.append(now, last);
+  path.append(next, value);
+}
+
+}  // namespace
+
 TimeVector GrowingPath::function() const {
   return {TimeFunction(component[0]), TimeFunction(component[1]), TimeFunction(component[2])};
 }
@@ -37,6 +50,7 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
   }
   scene.body.stop_rate = rate_;
   free_rest_values();
+  find_stiffnesses();
   if (scene.integrator == kAutomatic)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
@@ -62,6 +76,35 @@ void LiveSimulation::free_rest_values() {
   }
 }
 
+void LiveSimulation::find_stiffnesses() {
+  const auto& springs = scene_->body.springs();
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    const StateFunction& stiffness = springs[i]->stiffness;
+    if (!stiffness.is_constant() || !(stiffness.constant() > 0)) continue;
+    stiffnesses_.push_back({springs[i].get(), i, stiffness.constant(), nullptr, stiffness.constant()});
+  }
+}
+
+void LiveSimulation::set_stiffness(std::size_t i, double value) {
+  SpringStiffness& stiffness = stiffnesses_.at(i);
+  Spring& spring = *stiffness.spring;
+  if (!(value >= 0) || !std::isfinite(value))
+    throw std::invalid_argument("a stiffness of " + std::to_string(value) + " N/m for the spring " +
+                                spring.name + "; expected a number of at least 0");
+  stiffness.next = value;
+  if (stiffness.path) return;
+  State state = simulation_->state();
+  const double now = time_after(intervals_);
+  const auto place = [&](const Point& end) -> Vec3<double> {
+    return end.part == nullptr ? end.world.value(now) : PlacedPoint(simulation_->model(), end).at(state);
+  };
+  if (spring.acts_at(now))
+    state.work[static_cast<int>(Work::actuation)] -= spring.energy(place(spring.a), place(spring.b));
+  stiffness.path = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{stiffness.first});
+  spring.stiffness = TimeFunction(stiffness.path);
+  continue_from(std::move(state));
+}
+
 void LiveSimulation::set_rest_value(std::size_t i, double value) {
   RestValue& rest = rest_values_.at(i);
   if (!rest.range.contains(value))
@@ -81,12 +124,9 @@ void LiveSimulation::extend_paths(double now, double next) {
     if (gravity_->last_time() < now) gravity_->append(now, gravity_->last());
     gravity_->append(next, next_gravity_);
   }
-  for (RestValue& rest : rest_values_) {
-    const double last = rest.path->values().back();
-    if (rest.next == last) continue;
-    if (rest.path->times().back() < now) rest.path->append(now, last);
-    rest.path->append(next, rest.next);
-  }
+  for (RestValue& rest : rest_values_) extend(*rest.path, rest.next, now, next);
+  for (SpringStiffness& stiffness : stiffnesses_)
+    if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
 }
 
 void LiveSimulation::rebuild() {
@@ -100,6 +140,10 @@ void LiveSimulation::reset() {
   if (gravity_) scene_->body.changing_gravity.reset();
   gravity_.reset();
   for (RestValue& rest : rest_values_) rest.path->restart(0, rest.next = rest.first);
+  for (SpringStiffness& stiffness : stiffnesses_) {
+    stiffness.spring->stiffness = stiffness.next = stiffness.first;
+    stiffness.path.reset();
+  }
   intervals_ = 0;
   rebuild();
 }

@@ -31,6 +31,10 @@ Json key_frames_of(const GrowingPath& path) {
   return {{"t", t}, {"points", std::move(points)}, {"interpolation", "linear"}};
 }
 
+Json key_frames_of(const LinearKeys& path) {
+  return {{"t", path.times()}, {"y", path.values()}, {"interpolation", "linear"}};
+}
+
 Json spring_of(const Drag& drag) {
   const Spring& spring = *drag.spring;
   const MaterialAngles& at = drag.place;
@@ -53,8 +57,14 @@ void set_rest_values(Json& document, const LiveSimulation& simulation) {
     const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
     Json& parameter = document["parts"][number]["parameters"][rest.parameter];
     if (!parameter.is_object()) parameter = Json::object();
-    parameter["rest"] = {{"t", rest.path->times()}, {"y", rest.path->values()}, {"interpolation", "linear"}};
+    parameter["rest"] = key_frames_of(*rest.path);
   }
+}
+
+/// Writes the stiffnesses that the user has changed into the springs of the document.
+void set_stiffnesses(Json& document, const LiveSimulation& simulation) {
+  for (const SpringStiffness& stiffness : simulation.stiffnesses())
+    if (stiffness.path) document["springs"][stiffness.number]["stiffness"] = key_frames_of(*stiffness.path);
 }
 
 /// Makes the paths of mesh files relative to another folder.
@@ -93,6 +103,7 @@ std::string saved_scene(const LiveSimulation& simulation, const std::filesystem:
     time["step"] = scene.step;
   }
   document["output"]["frame_rate"] = simulation.rate();
+  set_stiffnesses(document, simulation);
   for (const Drag& drag : simulation.drags()) document["springs"].push_back(spring_of(drag));
   if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
   set_rest_values(document, simulation);

@@ -244,6 +244,31 @@ TEST_CASE("changed rest values are repeated to the last bit") {
   });
 }
 
+const char* const kSprung = R"({"time": {"tolerance": 1e-8},
+  "parts": [{"name": "egg", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}},
+            {"name": "box", "shape": "box", "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.1}, "position": [0.5, 0, 0]}],
+  "springs": [
+    {"name": "up", "from": {"part": "egg", "at": {"u": 0, "v": 0}}, "to": {"world": [0, 0, 0.5]},
+     "stiffness": 400, "damping": 1},
+    {"name": "cord", "from": {"part": "box", "at": {"direction": [-1, 0, 0]}},
+     "to": {"part": "egg", "at": {"direction": [1, 0, 0]}}, "stiffness": 300, "rest_length": 0.2}]})";
+
+TEST_CASE("changed stiffnesses are repeated to the last bit, and close the balance") {
+  for (const char* time : {R"({"tolerance": 1e-8})", R"({"step": 0.001, "integrator": "rk4"})"}) {
+    std::string text = kSprung;
+    text.replace(text.find(R"({"tolerance": 1e-8})"), std::string(R"({"tolerance": 1e-8})").size(), time);
+    check_replay(text, 60, [](LiveSimulation& live, int k) {
+      REQUIRE(live.stiffnesses().size() == 2);
+      CHECK(live.stiffnesses()[1].spring->name == "cord");
+      if (k == 10) live.set_stiffness(1, 900);
+      if (k == 40) live.set_stiffness(1, 100);
+      CHECK_THROWS_AS(live.set_stiffness(0, -1), std::invalid_argument);
+      drag(live, "egg", k);
+      CHECK(std::abs(live.ledger().balance) <= 1e-4);
+    });
+  }
+}
+
 TEST_CASE("a reset simulation repeats its first motion") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
   LiveSimulation live(*scene);

@@ -1,4 +1,5 @@
-// A simulation that a user drives while it runs: points are dragged and gravity changes.
+// A simulation that a user drives while it runs: points are dragged; gravity, rest values and stiffnesses
+// change.
 #pragma once
 
 #include <cstdint>
@@ -41,6 +42,15 @@ struct RestValue {
   double first;                      ///< value in the scene
   std::shared_ptr<LinearKeys> path;  ///< the values so far
   double next;                       ///< value at the end of the next interval
+};
+
+/// The stiffness of a spring of the scene, which the user can change.
+struct SpringStiffness {
+  Spring* spring;
+  std::size_t number;                ///< of the spring in the scene
+  double first;                      ///< value in the scene, N/m
+  std::shared_ptr<LinearKeys> path;  ///< the values so far
+  double next;                       ///< value at the end of the next interval, N/m
 };
 
 /// Advances a scene by intervals of equal length, 1 / rate(). All actions of the user take effect between two
@@ -88,6 +98,14 @@ class LiveSimulation {
   /// or 1. Throws std::invalid_argument for a value out of range.
   void set_rest_value(std::size_t i, double value);
 
+  /// The stiffnesses of the springs of the scene that are constant and positive there. Their order does not
+  /// change.
+  const std::vector<SpringStiffness>& stiffnesses() const { return stiffnesses_; }
+  /// Changes the stiffness of a spring linearly within the next interval. i: its number in stiffnesses();
+  /// value: N/m. From then on the spring is a muscle: its energy becomes work of actuation. Throws
+  /// std::invalid_argument for a value that is negative or not finite.
+  void set_stiffness(std::size_t i, double value);
+
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
   /// The path of gravity; nullptr if the user has not changed it.
@@ -95,6 +113,7 @@ class LiveSimulation {
 
  private:
   void free_rest_values();
+  void find_stiffnesses();
   void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);
@@ -109,6 +128,7 @@ class LiveSimulation {
   std::vector<Drag> drags_;
   std::unique_ptr<GrowingPath> gravity_;
   std::vector<RestValue> rest_values_;
+  std::vector<SpringStiffness> stiffnesses_;
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };
 

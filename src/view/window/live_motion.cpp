@@ -46,7 +46,10 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
       gravity_is_free_(!scene.body.changing_gravity),
       first_gravity_(scene.body.gravity_at(0)) {
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
-  run_.wait_for([&](LiveSimulation& simulation) { rest_values_ = simulation.rest_values(); });
+  run_.wait_for([&](LiveSimulation& simulation) {
+    rest_values_ = simulation.rest_values();
+    stiffnesses_ = simulation.stiffnesses();
+  });
   show_again();
   const State& state = snapshot_->state;
   Eigen::AlignedBox3d bodies = shown_.bounds(state), all = bodies;
@@ -136,6 +139,7 @@ void LiveMotion::step() {
 void LiveMotion::reset() {
   run_.reset();
   for (RestValue& rest : rest_values_) rest.next = rest.first;
+  for (SpringStiffness& stiffness : stiffnesses_) stiffness.next = stiffness.first;
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
 }
 
@@ -206,6 +210,7 @@ void LiveMotion::add_to_panel(const std::string& selected) {
     run_.post([wanted](LiveSimulation& simulation) { simulation.set_gravity(wanted); });
   }
   add_rest_values(selected);
+  add_stiffnesses(selected);
   ImGui::PopItemWidth();
   ImGui::TextUnformatted("forces of");
   bool changed = ImGui::Checkbox("contacts", &forces_.contacts);
@@ -235,6 +240,24 @@ void LiveMotion::add_rest_values(const std::string& part) {
     if (!ImGui::SliderFloat(rest.parameter.c_str(), &value, low, high, "%.3f")) continue;
     rest.next = std::clamp<double>(value, rest.range.min, rest.range.max);
     run_.post([i, wanted = rest.next](LiveSimulation& simulation) { simulation.set_rest_value(i, wanted); });
+  }
+}
+
+/// Adds a slider for the stiffness of each spring at a part, from 0.1 to 10 times its first value.
+void LiveMotion::add_stiffnesses(const std::string& part) {
+  const auto is_at = [&](const Point& end) { return end.part != nullptr && end.part->name() == part; };
+  for (std::size_t i = 0; i < stiffnesses_.size(); ++i) {
+    SpringStiffness& stiffness = stiffnesses_[i];
+    const Spring& spring = *stiffness.spring;
+    if (!is_at(spring.a) && !is_at(spring.b)) continue;
+    auto value = static_cast<float>(stiffness.next);
+    const auto first = static_cast<float>(stiffness.first);
+    if (!ImGui::SliderFloat((spring.name + " (N/m)").c_str(), &value, 0.1f * first, 10 * first, "%.4g",
+                            ImGuiSliderFlags_Logarithmic))
+      continue;
+    stiffness.next = value;
+    run_.post(
+        [i, wanted = stiffness.next](LiveSimulation& simulation) { simulation.set_stiffness(i, wanted); });
   }
 }
 
