@@ -221,7 +221,7 @@ void Simulation::with_rollback(double h, Advance&& step) {
     if (!shorter) throw UnsatisfiableModel(place + failure.what(), state_.time());
     std::ostringstream message;
     message << place << failure.what() << "; the step is too long: steps of " << h / simulation::kShorterSteps
-            << " s do not fail in this way";
+            << " s pass this time";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     reject_step();
