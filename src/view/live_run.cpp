@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSpeedWindow = 0.5, kLedgerEvery = 0.1;  // s of wall time
 /// A simulation that is later than this does not catch up, s of wall time.
-constexpr double kMaxDelay = 0.1;
+constexpr double kMaxDelay = 0.25;
 
 }  // namespace
 
