@@ -9,19 +9,6 @@
 
 namespace pliant {
 
-GrowingPath::GrowingPath(double t, const Vec3<double>& x) {
-  for (int i = 0; i < 3; ++i)
-    component[i] = std::make_shared<LinearKeys>(std::vector<double>{t}, std::vector<double>{x[i]});
-}
-
-void GrowingPath::append(double t, const Vec3<double>& x) {
-  for (int i = 0; i < 3; ++i) component[i]->append(t, x[i]);
-}
-
-Vec3<double> GrowingPath::last() const {
-  return {component[0]->values().back(), component[1]->values().back(), component[2]->values().back()};
-}
-
 namespace {
 
 /// Adds the keys of the next interval, from `now` to `next` (s), to a path that goes to a value. Does nothing
@@ -34,6 +21,19 @@ void extend(LinearKeys& path, double value, double now, double next) {
 }
 
 }  // namespace
+
+GrowingPath::GrowingPath(double t, const Vec3<double>& x) {
+  for (int i = 0; i < 3; ++i)
+    component[i] = std::make_shared<LinearKeys>(std::vector<double>{t}, std::vector<double>{x[i]});
+}
+
+void GrowingPath::append(double t, const Vec3<double>& x) {
+  for (int i = 0; i < 3; ++i) component[i]->append(t, x[i]);
+}
+
+Vec3<double> GrowingPath::last() const {
+  return {component[0]->values().back(), component[1]->values().back(), component[2]->values().back()};
+}
 
 TimeVector GrowingPath::function() const {
   return {TimeFunction(component[0]), TimeFunction(component[1]), TimeFunction(component[2])};

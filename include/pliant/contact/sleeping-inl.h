@@ -154,7 +154,8 @@ PLIANT_INLINE void Sleeping::find_drives() {
       drives_.push_back(
           {f.at.part, [&f](double t, double h) { return sleeping::differs(f.force->force, t, h); }});
   }
-  for (const DistributedModel& m : model_.distributed_forces())
+  for (const DistributedModel& m : model_.distributed_forces()) {
+    if (m.force->density.is_constant() && m.force->pressure.is_constant()) continue;
     drives_.push_back({m.part, [force = m.force](double t, double h) {
                          const auto& f = force->density.component;
                          return std::any_of(f.begin(), f.end(),
@@ -163,6 +164,7 @@ PLIANT_INLINE void Sleeping::find_drives() {
                                             }) ||
                                 sleeping::differs_at_rest(force->pressure, t, h);
                        }});
+  }
   for (const TorqueModel& torque : model_.torques())
     for (const int end : {torque.part, torque.against})
       if (has(end) && sleeping::is_prescribed(*torque.torque))
