@@ -197,7 +197,7 @@ TEST_CASE("contacts of crossing meshes: corners behind faces, edges across edges
     part.rest({{"a1", 1.0}, {"a2", 1.0}, {"a3", 1.0}});
   }
   const Model model(body);
-  const ContactMesh mesh(model.parts()[0]);
+  const ContactMesh mesh(model.parts()[0], 0);
   const State state = model.initial_state();
   const Eigen::Matrix3Xd p = mesh.positions(model, state, 0);
   auto touches = [&](const Eigen::Quaterniond& R, const Vec3<double>& c) {

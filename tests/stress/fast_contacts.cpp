@@ -96,7 +96,7 @@ Vec3<double> mean_position(const Simulation& simulation, int part) {
   const PartModel& m = model.parts()[static_cast<std::size_t>(part)];
   if (m.local == nullptr) return c;
   const Mat3<double> R = model.orientation(simulation.state(), part).toRotationMatrix();
-  return c + R * ContactMesh(m).positions(model, simulation.state(), part).rowwise().mean();
+  return c + R * ContactMesh(m, 0).positions(model, simulation.state(), part).rowwise().mean();
 }
 
 struct ShotResults {

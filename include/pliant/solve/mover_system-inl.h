@@ -122,10 +122,11 @@ Eigen::Matrix<double, N, N> MoverSystem::inverse_of(const Mover& k) const {
 }
 
 /// Eliminates mover k: x_k = (1 + A_kk)^-1 (b_k - sum of A_kj x_j over its remaining neighbours).
-template <int N>
+template <int N, int M>
 void MoverSystem::eliminate(const Mover& k) {
   using Numbers = Eigen::Matrix<double, N, N>;
-  using BlockMap = Eigen::Map<Numbers>;
+  using Above = Eigen::Map<Eigen::Matrix<double, N, M>>;
+  using Left = Eigen::Map<Eigen::Matrix<double, M, N>>;
   double* numbers = numbers_.data();
   const Numbers inverse = inverse_of<N>(k);
   const Eigen::Matrix<double, N, 1> b = inverse * b_.segment<N>(k.row, k.size);
@@ -134,13 +135,14 @@ void MoverSystem::eliminate(const Mover& k) {
   double *const beside = numbers + k.numbers + at(k.size * k.size), *above = beside;
   for (const int j : k.neighbours) {
     const int columns = movers_[at(j)].size;
-    BlockMap U(above, k.size, columns);
-    U = (inverse * U).eval();
+    Above U(above, k.size, columns);
+    for (int c = 0; c < columns; ++c) U.col(c) = (inverse * U.col(c)).eval();
     double* left = beside;
     for (const int i : k.neighbours) {
       const int rows = movers_[at(i)].size;
       left += k.size * rows;
-      BlockMap(numbers + *target, rows, columns).noalias() -= BlockMap(left, rows, k.size).lazyProduct(U);
+      Eigen::Map<Eigen::Matrix<double, M, M>>(numbers + *target, rows, columns).noalias() -=
+          Left(left, rows, k.size).lazyProduct(U);
       left += k.size * rows;
       ++target;
     }
@@ -150,7 +152,7 @@ void MoverSystem::eliminate(const Mover& k) {
   for (const int i : k.neighbours) {
     const Mover& one = movers_[at(i)];
     left += k.size * one.size;
-    b_.segment<N>(one.row, one.size) -= BlockMap(left, one.size, k.size).lazyProduct(b);
+    b_.segment<M>(one.row, one.size) -= Left(left, one.size, k.size).lazyProduct(b);
     left += k.size * one.size;
   }
 }
@@ -159,11 +161,13 @@ PLIANT_INLINE void MoverSystem::solve() {
   for (const int number : sequence_) {
     const Mover& k = movers_[at(number)];
     if (k.uniform && k.size == 3)
-      eliminate<3>(k);
+      eliminate<3, 3>(k);
     else if (k.uniform && k.size == 6)
-      eliminate<6>(k);
+      eliminate<6, 6>(k);
+    else if (k.size == 3)
+      eliminate<3, Eigen::Dynamic>(k);
     else
-      eliminate<Eigen::Dynamic>(k);
+      eliminate<Eigen::Dynamic, Eigen::Dynamic>(k);
   }
   for (auto number = sequence_.rbegin(); number != sequence_.rend(); ++number) {
     const Mover& k = movers_[at(*number)];

@@ -76,8 +76,8 @@ class MoverSystem {
     std::size_t targets = 0;  ///< start in targets_ of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-  /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
-  template <int N>
+  /// N: the size of the mover, M: that of all its neighbours; or Eigen::Dynamic.
+  template <int N, int M>
   void eliminate(const Mover& k);
   /// Returns the inverse of the diagonal block of a mover.
   template <int N>

@@ -4,12 +4,14 @@
 #include <map>
 #include <utility>
 
+#include <pliant/collision/mesh/sparse_surface.h>
 #include <pliant/part/mesh/surface.h>
 
 namespace pliant {
 
 namespace {
-/// Resolution of the mesh of a part without nodes; Surface explains the resolution for balls and tori.
+/// Resolution of curved regions of the mesh of a part without nodes; Surface explains the resolution for
+/// balls and tori.
 constexpr int kMeshResolution = 6;
 /// reach() and speed() of a part without nodes and with dynamic parameters use the vertices of a coarse mesh
 /// with the resolution kCoarseMeshEdges, and multiply the largest value by kCoarseMeshMargin.
@@ -32,7 +34,7 @@ std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
   return edges;
 }
 
-ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
+ContactMesh::ContactMesh(const PartModel& m, double cell) : part_(&m) {
   Eigen::Matrix3Xd p;
   if (m.local != nullptr) {
     const LocalMesh& mesh = m.local->mesh();
@@ -47,7 +49,7 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
         rest_.col(k) = all.col(nodes_[static_cast<std::size_t>(k)]);
     }
   } else {
-    const Surface surface(*m.part, kMeshResolution);
+    const Surface surface = sparse_surface(*m.part, kMeshResolution, cell);
     material_ = surface.material();
     triangles_ = surface.triangles();
     p = m.part->s(material_, m.part->parameters().rest());
@@ -58,6 +60,8 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
   }
   if (rigid_.cols() > 0) rigid_reach_ = rigid_.colwise().norm().maxCoeff();
   edges_ = mesh_edges(triangles_);
+  for (const Edge& edge : edges_)
+    mean_edge_ += (p.col(edge.to) - p.col(edge.from)).norm() / static_cast<double>(edges_.size());
   thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -27,7 +28,14 @@ MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obst
   const int n = static_cast<int>(model.parts().size());
   for (int i = 0; i < n && !rules_; ++i)
     if (deforms_locally(i)) rules_.emplace(model);
-  auto add_mesh = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
+  // Cells in flat regions of parts without nodes are as large as those of the finest mesh of nodes, cell (m).
+  double cell = std::numeric_limits<double>::infinity();
+  std::vector<int> without_nodes;
+  auto add_mesh = [&](int i) {
+    if (!deforms_locally(i)) return without_nodes.push_back(i);
+    const ContactMesh& mesh = meshes_.try_emplace(i, model.parts()[at(i)], cell).first->second;
+    cell = std::min(cell, mesh.mean_edge());
+  };
   for (int i = 0; i < n; ++i) {
     if (!deforms_locally(i)) continue;
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
@@ -49,6 +57,7 @@ MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obst
       add_mesh(j);
     }
   }
+  for (const int i : without_nodes) meshes_.try_emplace(i, model.parts()[at(i)], cell);
 }
 
 bool MeshFinder::deforms_locally(int part) const {

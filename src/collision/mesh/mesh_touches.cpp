@@ -25,6 +25,8 @@ constexpr double kTie = 1e-9;
 /// A point is straight behind a triangle if its squared distances to the triangle and to the plane of the
 /// triangle agree to this share.
 constexpr double kStraightAbove = 1e-6;
+/// Share of squared distances by which the test of faces that a point may be behind is widened for rounding.
+constexpr double kBehindSlack = 1e-5;
 /// An edge is not sharp if the sine of the angle between the normals of its triangles is at most this.
 constexpr double kNoTurn = 1e-6;
 /// For the search of triangles of an obstacle, the box of a part is enlarged by this share of the largest
@@ -164,9 +166,34 @@ class NearestOf {
  public:
   /// faces: must outlive this object.
   explicit NearestOf(const std::vector<Candidates::Face>& faces)
-      : faces_(faces), centres_(static_cast<Eigen::Index>(faces.size()), 3) {
-    for (Eigen::Index k = 0; k < centres_.rows(); ++k)
-      centres_.row(k) = faces[static_cast<std::size_t>(k)].centre.transpose();
+      : faces_(faces),
+        centres_(static_cast<Eigen::Index>(faces.size()), 3),
+        normals_(centres_.rows(), 3),
+        offsets_(centres_.rows()),
+        square_radii_(centres_.rows()) {
+    for (Eigen::Index k = 0; k < centres_.rows(); ++k) {
+      const Candidates::Face& face = faces[static_cast<std::size_t>(k)];
+      centres_.row(k) = face.centre.transpose();
+      normals_.row(k) = face.normal.transpose();
+      offsets_[k] = face.normal.dot(face.centre);
+      square_radii_[k] = face.radius * face.radius;
+    }
+  }
+
+  /// Returns false only if x is not straight behind its nearest face. This test costs less than a search.
+  bool may_be_straight_behind(const Vec3<double>& x) {
+    if (faces_.empty()) return false;
+    measure_distances(x);
+    Eigen::Index near = 0;
+    squared_distances_.minCoeff(&near);
+    const Candidates::Face& face = faces_[static_cast<std::size_t>(near)];
+    const double square = square_to(face, nearest_weights(x, face.p0, face.p1, face.p2), x);
+    // A face that x is straight behind is below x, not farther than `face`, and its ball contains the foot.
+    heights_ = normals_.col(0) * x[0] + normals_.col(1) * x[1] + normals_.col(2) * x[2] - offsets_;
+    const double slack = kBehindSlack * (square + squared_distances_[near]);
+    return ((heights_ < std::sqrt(slack)) && (heights_.square() <= square + slack) &&
+            (squared_distances_ - heights_.square() <= square_radii_ + slack))
+        .any();
   }
 
   /// Returns the face nearest to x among the faces for which is_candidate(face) is true. NearestFace::face is
@@ -178,7 +205,7 @@ class NearestOf {
     auto consider = [&](const Candidates::Face& face) {
       const double height = face.normal.dot(x - face.p0);
       const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
-      const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
+      const double square = square_to(face, w, x);
       // Of several equally near faces, the one with the largest |height| of x decides between inside and
       // outside.
       const bool nearer = square < best.square * (1 - kTie);
@@ -187,8 +214,7 @@ class NearestOf {
       reach = std::sqrt(square) * (1 + kTie);
     };
     // The face with the nearest centre is tested first, so that most other faces are excluded by their balls.
-    squared_distances_ = (centres_.col(0) - x[0]).square() + (centres_.col(1) - x[1]).square() +
-                         (centres_.col(2) - x[2]).square();
+    measure_distances(x);
     std::size_t first = faces_.size();
     double min_square = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < faces_.size(); ++k) {
@@ -208,9 +234,22 @@ class NearestOf {
   }
 
  private:
+  /// Returns the squared distance (m^2) of x to the point of a face with these weights.
+  static double square_to(const Candidates::Face& face, const Vec3<double>& weight, const Vec3<double>& x) {
+    return (weight[0] * face.p0 + weight[1] * face.p1 + weight[2] * face.p2 - x).squaredNorm();
+  }
+
+  void measure_distances(const Vec3<double>& x) {
+    squared_distances_ = (centres_.col(0) - x[0]).square() + (centres_.col(1) - x[1]).square() +
+                         (centres_.col(2) - x[2]).square();
+  }
+
   const std::vector<Candidates::Face>& faces_;
-  Eigen::Array<double, Eigen::Dynamic, 3> centres_;
+  Eigen::Array<double, Eigen::Dynamic, 3> centres_, normals_;
+  Eigen::ArrayXd offsets_;            // normal times centre, m
+  Eigen::ArrayXd square_radii_;       // m^2
   Eigen::ArrayXd squared_distances_;  // from the centres of the faces to x, m^2
+  Eigen::ArrayXd heights_;            // of x above the planes of the faces, m
 };
 
 /// Appends the overlaps of vertices of one mesh that are behind faces of the other mesh. one: positions of
@@ -223,6 +262,7 @@ void add_vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& ve
   NearestOf nearest_of(faces);
   for (const int k : vertices) {
     const Vec3<double> x = one.col(k);
+    if (!all && !nearest_of.may_be_straight_behind(x)) continue;
     const NearestFace nearest = nearest_of(x, [](const Candidates::Face&) { return true; });
     if (!(nearest.gap < 0) || !(all || nearest.is_straight_behind())) continue;
     const Candidates::Face& which = *nearest.face;

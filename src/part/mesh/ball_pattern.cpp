@@ -47,7 +47,7 @@ Vec3<double> ball_direction(const LatticePoint& p) {
   return {c * cv, c * sv, s};
 }
 
-BallSurface::BallSurface(int m) {
+BallSurface::BallSurface(int m, const std::array<int, 3>& spacing) {
   auto vertex = [&](const LatticePoint& p) {
     const auto [at, is_new] = index.try_emplace(p, static_cast<int>(points.size()));
     if (is_new) points.push_back(p);
@@ -68,9 +68,12 @@ BallSurface::BallSurface(int m) {
       triangles.push_back({a, b, c});
       triangles.push_back({a, c, d});
     };
-    for (int a = -m; a < m; ++a)
-      for (int b = -m; b < m; ++b) {
-        const int low = at(a, b), right_of = at(a + 1, b), high = at(a + 1, b + 1), above = at(a, b + 1);
+    const int width = spacing[static_cast<std::size_t>(right)],
+              height = spacing[static_cast<std::size_t>(up)];
+    for (int a = -m; a < m; a += width)
+      for (int b = -m; b < m; b += height) {
+        const int low = at(a, b), right_of = at(a + width, b), high = at(a + width, b + height),
+                  above = at(a, b + height);
         if ((a >= 0) == (b >= 0))
           quad(low, right_of, high, above);
         else

@@ -15,8 +15,9 @@ class ContactMesh {
     int left, right;  ///< triangles; `left` has the edge in the order from, to; right is -1 at a border
   };
 
-  /// m: part of a model that outlives this object.
-  explicit ContactMesh(const PartModel& m);
+  /// m: part of a model that outlives this object. cell: largest size of cells in flat regions of a part
+  /// without nodes, m (sparse_surface()).
+  ContactMesh(const PartModel& m, double cell);
 
   const PartModel& part() const { return *part_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
@@ -27,6 +28,8 @@ class ContactMesh {
   const std::vector<Material<double>>& material() const { return material_; }
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
+  /// Mean length of the edges at rest, m.
+  double mean_edge() const { return mean_edge_; }
   /// Computes the vertices: one column for each, body frame, m. number: number of the part.
   Eigen::Matrix3Xd positions(const Model& model, const State& state, int number) const;
   /// Radius of a ball about the origin of the part's frame that contains the part, m. For a part without
@@ -54,7 +57,7 @@ class ContactMesh {
   mutable VecX<double> last_q_s_;
   Eigen::Matrix3Xd
       rest_;  // vertices at d = 0 of a part with local deformation and without dynamic parameters
-  double thickness_;
+  double thickness_, mean_edge_ = 0;
 };
 
 /// Returns the edges of a mesh, in the order of its triangles (columns of vertex numbers).

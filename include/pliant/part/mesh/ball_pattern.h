@@ -24,10 +24,11 @@ inline int ball_shell(const LatticePoint& p) {
 /// Returns the direction (unit vector) of a lattice point. The point must not be the centre.
 Vec3<double> ball_direction(const LatticePoint& p);
 
-/// Shell m with its triangles, counter-clockwise seen from outside. Each square of a face of the cube is cut
+/// Shell m with its triangles, counter-clockwise seen from outside. Each cell of a face of the cube is cut
 /// along the diagonal that points away from the middle of the face.
 struct BallSurface {
-  explicit BallSurface(int m);
+  /// spacing: size of the cells along each axis of the lattice; it divides 2 m.
+  explicit BallSurface(int m, const std::array<int, 3>& spacing = {1, 1, 1});
   std::vector<LatticePoint> points;
   std::map<LatticePoint, int> index;  ///< number of each point in `points`
   std::vector<std::array<int, 3>> triangles;

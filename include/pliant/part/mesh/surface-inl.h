@@ -63,7 +63,7 @@ inline void set_normals(TriangleMesh& mesh, std::vector<Vec3<double>> normals) {
 
 }  // namespace detail
 
-PLIANT_INLINE Surface::Surface(const Part& part, int resolution) {
+PLIANT_INLINE Surface::Surface(const Part& part, int resolution, const std::array<int, 3>& spacing) {
   if (resolution < 1 || resolution > 512)
     throw std::invalid_argument("surface resolution " + std::to_string(resolution) +
                                 " must be from 1 to 512");
@@ -71,7 +71,7 @@ PLIANT_INLINE Surface::Surface(const Part& part, int resolution) {
   const ShapeInterface& shape = part.shape();
   std::vector<std::array<int, 3>> triangles;
   if (shape.mesh() == MeshPattern::ball) {
-    const BallSurface ball(resolution);
+    const BallSurface ball(resolution, spacing);
     for (const LatticePoint& p : ball.points) places_.push_back(ball_direction(p));
     triangles = ball.triangles;
   } else {

@@ -1,0 +1,14 @@
+// The surface of a part with no more mesh lines than contact with parts that deform locally needs. A box gets
+// few cells, the sides of a cylinder few cells along the axis, and a bent box many cells along the bend only.
+#pragma once
+
+#include <pliant/part/mesh/surface.h>
+
+namespace pliant {
+
+/// Returns the surface of a part at a resolution (Surface) without some of the mesh lines in flat regions. The
+/// triangles cover the same surface at rest and at two other values of the dynamic parameters, up to rounding.
+/// cell: largest size of the wider cells along the axes of the frame, m.
+Surface sparse_surface(const Part& part, int resolution, double cell);
+
+}  // namespace pliant
