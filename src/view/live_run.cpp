@@ -15,8 +15,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSpeedWindow = 0.5, kLedgerEvery = 0.1;  // s of wall time
-/// A simulation that is later than this does not catch up, s of wall time.
+constexpr double kSpeedWindow = 0.5, kFirstSpeed = 0.1, kLedgerEvery = 0.1;  // s of wall time
+/// Of a delay of the simulation, at most this much is caught up, s of wall time.
 constexpr double kMaxDelay = 0.25;
 
 }  // namespace
@@ -40,11 +40,13 @@ class LiveRun::Clock {
         std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(kMaxDelay));
     return due_ = std::max(due_, now - latest);
   }
-  /// Measures the speed at a simulated time, s.
+  /// The time that commands took is not caught up. start: when they began.
+  void skip_since(WallClock::time_point start) { due_ += WallClock::now() - start; }
+  /// Measures the speed at a simulated time, s. Returns 0 until kFirstSpeed seconds have passed.
   double speed(double time) {
     const double wall = seconds_since(measured_);
-    if (wall >= kSpeedWindow || speed_ == 0) {
-      if (wall > 0) speed_ = (time - measured_time_) / wall;
+    if (wall >= kSpeedWindow || (speed_ == 0 && wall >= kFirstSpeed)) {
+      speed_ = (time - measured_time_) / wall;
       if (wall >= kSpeedWindow) {
         measured_ = WallClock::now();
         measured_time_ = time;
@@ -185,6 +187,8 @@ void LiveRun::loop() {
 }
 
 void LiveRun::perform(std::vector<Command>& commands) {
+  if (commands.empty()) return;
+  const WallClock::time_point start = WallClock::now();
   for (Command& command : commands) {
     try {
       refusal_.clear();
@@ -193,6 +197,7 @@ void LiveRun::perform(std::vector<Command>& commands) {
       refusal_ = failure.what();
     }
   }
+  clock_->skip_since(start);
 }
 
 void LiveRun::advance() {

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include <pliant/body/actuation/named_signal.h>
+#include <pliant/part/local/local_laws.h>
 
 #include "differences.h"
 #include "draws.h"
@@ -361,6 +362,21 @@ TEST_CASE("states of identical bits have the same hash", "[dynamics]") {
   CHECK(changed([](State& s) { s.start += 1; }));
   CHECK(changed([](State& s) { s.h *= 2; }));
   CHECK(changed([](State& s) { ++s.step; }));
+}
+
+TEST_CASE("the energy of an inverted element is refused with the name of its part", "[dynamics]") {
+  MultiBody body;
+  LocalSettings settings;
+  settings.resolution = 1;
+  settings.energies = {local_law("corotated", {1e4, 0.3})};
+  settings.displacement = [](const Vec3<double>& X) { return Vec3<double>(-2 * X[0], 0, 0); };
+  body.add(make_part("jelly", "ellipsoid", {}, 1000)).rest({{"a1", 0.3}}).deform_locally(settings);
+  const Model model(body);
+  const Dynamics dynamics(model);
+  Workspace<double> work;
+  const State state = model.initial_state();
+  CHECK_THROWS_WITH(dynamics.energy(0, state.q, state.v, {0}, work),
+                    test::has_text("part 'jelly': an element of corotated material is inverted"));
 }
 
 }  // namespace dynamics_test

@@ -2,9 +2,12 @@
 #include "catch.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <pliant/body/model.h>
 #include <pliant/collision/mesh/mesh_touches.h>
@@ -20,7 +23,7 @@ using test::random_rotation;
 
 namespace {
 
-/// Returns the squared distance of x to a triangle by bisection over its two coordinates, as a reference.
+/// Returns the squared distance of x to a triangle, by projection to its plane and to its three edges.
 double square_to(const Vec3<double>& x, const std::array<Vec3<double>, 3>& p) {
   const Vec3<double> normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
   const double height = normal.dot(x - p[0]);
@@ -36,18 +39,20 @@ double square_to(const Vec3<double>& x, const std::array<Vec3<double>, 3>& p) {
   return inside ? height * height : nearest;
 }
 
-/// Returns whether x is straight behind the nearest triangle of a mesh.
+/// Returns whether x is straight behind the nearest triangle of a mesh. Of equally near triangles the one
+/// with the largest height of x decides.
 bool is_inside(const Vec3<double>& x, const PlacedMesh& m) {
+  std::vector<std::pair<double, double>> triangles;  // squared distance, height
   double nearest = std::numeric_limits<double>::infinity(), gap = 0;
   for (Eigen::Index t = 0; t < m.mesh->triangles().cols(); ++t) {
     std::array<Vec3<double>, 3> p;
     for (int k = 0; k < 3; ++k) p[static_cast<std::size_t>(k)] = m.x.col(m.mesh->triangles()(k, t));
-    const double square = square_to(x, p);
-    if (square >= nearest) continue;
-    nearest = square;
-    gap = (p[1] - p[0]).cross(p[2] - p[0]).normalized().dot(x - p[0]);
+    triangles.emplace_back(square_to(x, p), (p[1] - p[0]).cross(p[2] - p[0]).normalized().dot(x - p[0]));
+    nearest = std::min(nearest, triangles.back().first);
   }
-  return gap < 0 && nearest <= gap * gap * (1 + 1e-9);
+  for (const auto& [square, height] : triangles)
+    if (square <= nearest * (1 + 1e-9) && std::abs(height) > std::abs(gap)) gap = height;
+  return gap < 0 && nearest <= gap * gap * (1 + 1e-6);
 }
 
 }  // namespace
@@ -89,6 +94,40 @@ TEST_CASE("vertices inside another mesh", "[collision]") {
     inside += static_cast<int>(expected.size());
   }
   CHECK(inside > 40);
+}
+
+TEST_CASE("vertices in a shallow dent are inside", "[collision]") {
+  MultiBody body;
+  body.add(make_part("box", "box", {}, 1000)).rest({{"a1", 1.0}, {"a2", 1.0}, {"a3", 1.0}});
+  body.add(make_part("ball", "ellipsoid", {}, 1000)).rest({{"a1", 0.04}, {"a2", 0.04}, {"a3", 0.04}});
+  const Model model(body);
+  const State state = model.initial_state();
+  const ContactMesh box(model.parts()[0], 0), ball(model.parts()[1], 0);
+  const Eigen::Matrix3Xd flat = box.positions(model, state, 0), small = ball.positions(model, state, 1);
+  Eigen::Index middle = 0, lowest = 0;
+  (flat.colwise() - Vec3<double>(0, 0, 1)).colwise().norm().minCoeff(&middle);
+  small.row(2).minCoeff(&lowest);
+  const double edge = 1.0 / 6;
+  Draws draws(3);
+  int inside = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    // The feet of points near the axis of a dent are outside the triangles that meet there, by slope * depth.
+    const double slope = std::pow(10, draws.uniform(-5, -3)), depth = draws.uniform(0.01, 0.1) * edge;
+    Eigen::Matrix3Xd dented = flat;
+    dented(2, middle) -= slope * edge;
+    const Vec3<double> offset(draws.uniform(-2, 2) * slope * depth, draws.uniform(-2, 2) * slope * depth, 0);
+    const Vec3<double> target = dented.col(middle) + offset - depth * Vec3<double>::UnitZ();
+    const PlacedMesh a(ball, small.colwise() + (target - small.col(lowest))), b(box, dented);
+    std::vector<MeshTouch> touches;
+    find_touches(a, b, touches);
+    const bool found = std::any_of(touches.begin(), touches.end(), [&](const MeshTouch& touch) {
+      return touch.a.vertex[1] < 0 && touch.a.vertex[0] == lowest;
+    });
+    INFO("trial " << trial << ", slope " << slope);
+    CHECK(found == is_inside(target, b));
+    inside += found ? 1 : 0;
+  }
+  CHECK(inside > 100);
 }
 
 }  // namespace mesh_touches_test

@@ -65,6 +65,9 @@ TEST_CASE("a sparse surface covers the same surface with fewer vertices", "[coll
       // The bend is oblique to the sides: they become cones, whose generators are straight.
       {"box", {"bend"}, {{"bend.direction", 0.7}}, {{"bend.angle", 0.9}}, 4 * (n + 1)},
       {"box", {"twist"}, {}, {{"twist.angle", 1.1}}, kDense},
+      // Triangles without area at the tip contain no points.
+      {"cylinder", {"taper"}, {{"taper.tx", 1}, {"taper.ty", 1}}, {}, 2 * (rings + cap)},
+      {"box", {"taper", "twist"}, {{"taper.tx", 1}, {"taper.ty", 0}, {"twist.angle", 1.5}}, {}, kDense},
       {"cylinder", {}, {}, {}, 2 * (rings + cap)},
       {"cone", {}, {}, {{"a1", 1.3}}, 2 * (rings + cap)},
       {"cylinder", {"bend"}, {}, {{"bend.angle", 0.5}}, kDense},

@@ -40,4 +40,37 @@ TEST_CASE("one slow picture does not change the quality of drafts") {
   CHECK(draft.quality() == Quality::draft);
 }
 
+TEST_CASE("the first picture does not change the quality of drafts") {
+  DraftQuality draft;
+  draft.add(10);
+  CHECK(draw(draft, 0.5 * DraftQuality::kLongest, 30) == 0);
+}
+
+TEST_CASE("drafts do not lose samples if this saves little time") {
+  DraftQuality draft;
+  int lower = 0;
+  const int pictures = 4 * DraftQuality::kPause;
+  for (int i = 0; i < pictures; ++i) {
+    const double samples = WindowRenderer::samples(draft.quality());
+    draft.add(0.036 + 0.003 * samples * samples);  // mostly other work
+    if (draft.quality() != Quality::draft) ++lower;
+  }
+  CHECK(lower > 0);  // trials
+  CHECK(lower < 0.05 * pictures);
+}
+
+TEST_CASE("drafts get their samples back although a part of their time is other work") {
+  DraftQuality draft;
+  const auto add = [&](int pictures, double slower) {
+    for (int i = 0; i < pictures; ++i) {
+      const double samples = WindowRenderer::samples(draft.quality());
+      draft.add(slower * (0.02 + 0.01 * samples * samples));
+    }
+  };
+  add(60, 3);
+  CHECK(draft.quality() == Quality::two_thirds_draft);  // half of the samples would save 8 % of the time
+  add(3 * DraftQuality::kPause, 1);
+  CHECK(draft.quality() == Quality::draft);
+}
+
 }  // namespace draft_quality_test

@@ -82,13 +82,27 @@ TEST_CASE("a live run keeps real time, or is as fast as it can") {
   LiveRun run(*scene);
   run.play();
   const auto start = std::chrono::steady_clock::now();
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  CHECK(run.snapshot()->speed < 1.5);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
   const std::shared_ptr<const Snapshot> now = run.snapshot();
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   CHECK(now->state.time() <= wall + 0.05);  // never ahead; other processes may delay it
   CHECK(now->state.time() > 0.2 * wall);
   run.set_max_speed(std::numeric_limits<double>::infinity());
   wait_until(run, [](const Snapshot& later) { return later.state.time() > 10; });
+}
+
+TEST_CASE("a live run does not catch up the time of a slow command") {
+  const std::unique_ptr<Scene> scene = ball_scene();
+  LiveRun run(*scene);
+  run.play();
+  const double before = wait_until(run, [](const Snapshot& s) { return s.state.time() > 0.1; })->state.time();
+  const auto start = std::chrono::steady_clock::now();
+  run.wait_for([](LiveSimulation&) { std::this_thread::sleep_for(std::chrono::milliseconds(500)); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  CHECK(run.snapshot()->state.time() - before < wall - 0.4);
 }
 
 TEST_CASE("a snapshot has the drag, its ledger and the message of a command that fails") {

@@ -269,6 +269,51 @@ TEST_CASE("changed stiffnesses are repeated to the last bit, and close the balan
   }
 }
 
+TEST_CASE(
+    "changed stiffnesses of a spring that acts for a time, at a sleeping box and at nodes, are repeated") {
+  const auto change = [](LiveSimulation& live, int k) {
+    if (k == 15 || k == 30) live.set_stiffness(0, 60 * k);
+    if (k == 50) live.set_stiffness(0, 0);
+  };
+  SECTION("from on to off") {
+    check_replay(R"({"time": {"tolerance": 1e-8},
+      "parts": [{"name": "egg", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}}],
+      "springs": [{"name": "up", "from": {"part": "egg", "at": {"u": 0, "v": 0}}, "to": {"world": [0, 0, 0.5]},
+                   "stiffness": 400, "damping": 1, "on": 0.25, "off": 0.9}]})",
+                 70, change);
+  }
+  SECTION("a box that sleeps") {
+    check_replay(R"({"time": {"tolerance": 1e-6},
+      "parts": [{"name": "box", "shape": "box", "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.1}, "position": [0, 0, 0.11]}],
+      "springs": [{"from": {"part": "box", "at": {"direction": [0, 0, 1]}}, "to": {"world": [0, 0, 1]},
+                   "stiffness": 5, "rest_length": 0.5}],
+      "contact": {"friction": 0.5, "sleep": {"speed": 0.01, "after": 0.1}, "planes": [{"name": "floor"}]}})",
+                 70, change);
+  }
+  SECTION("nodes and linearly implicit steps") {
+    check_replay(R"({"time": {"step": 0.002, "integrator": "linearly_implicit"},
+      "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.2}, "density": 500,
+                 "local": {"resolution": 2, "laws": [{"type": "neo_hookean", "E": 20000, "nu": 0.3}], "alpha": 1}}],
+      "springs": [{"from": {"part": "jelly", "at": {"u": 0, "v": 0}}, "to": {"world": [0.5, 0, 0.5]}, "stiffness": 400}]})",
+                 60, change);
+  }
+}
+
+TEST_CASE("a reset simulation has the first stiffnesses") {
+  const std::unique_ptr<Scene> scene = parse(kSprung), fresh = parse(kSprung);
+  LiveSimulation live(*scene), other(*fresh);
+  for (int k = 0; k < 20; ++k) {
+    if (k == 5) live.set_stiffness(0, 900);
+    live.advance();
+  }
+  live.reset();
+  for (int k = 0; k < 20; ++k) {
+    live.advance();
+    other.advance();
+  }
+  CHECK(same_bits(live.simulation().state().q, other.simulation().state().q));
+}
+
 TEST_CASE("a reset simulation repeats its first motion") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
   LiveSimulation live(*scene);

@@ -14,7 +14,7 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const PartModel& m, const Part
                                         Ledger& ledger) const {
   const Vec3<double> g = model_->body().gravity_at(t);
   if (m.local != nullptr) {
-    const LocalMotion motion = m.local->motion(w.v_r, *w.local);
+    const LocalMotion motion = detail::local_motion(m, w);
     ledger.kinetic += motion.kinetic;
     ledger.local += motion.elastic;
     ledger.gravity -= g.dot(m.part->total_mass() * w.c + w.R * motion.moment);
@@ -24,7 +24,9 @@ PLIANT_INLINE void Dynamics::add_energy(double t, const PartModel& m, const Part
   }
   const VecMax<double> stretch = w.q_s - m.rest_at(t);
   ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
-  if (m.part->continuum() != nullptr) ledger.elastic += m.part->continuum()->energy(*m.part, w.q_s);
+  if (m.part->continuum() != nullptr)
+    ledger.elastic +=
+        with_name_of_part(m.part->name(), [&] { return m.part->continuum()->energy(*m.part, w.q_s); });
 }
 
 PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
@@ -92,7 +94,7 @@ PLIANT_INLINE Ledger Dynamics::ledger(double t, const State& state, Workspace<do
     add_energy(t, m, w, ledger);
     VecMax<double> momentum;  // linear and angular momentum about c, body frame
     if (m.local != nullptr) {
-      const LocalMotion motion = m.local->motion(w.v_r, *w.local);
+      const LocalMotion motion = detail::local_motion(m, w);
       momentum.resize(6);
       momentum << motion.momentum, motion.angular_momentum;
     } else {

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include <pliant/body/advance.h>
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/impact_timing.h>
@@ -76,7 +77,7 @@ inline std::vector<Vec3<double>> local_momenta(const Model& model, const std::ve
   for (const int i : parts) {
     const PartModel& m = model.parts()[at(i)];
     const PartWorkspace<double>& w = work.parts[at(i)];
-    if (m.local != nullptr) momenta.push_back(w.R * m.local->motion(w.v_r, *w.local).momentum);
+    if (m.local != nullptr) momenta.push_back(w.R * detail::local_motion(m, w).momentum);
   }
   return momenta;
 }

@@ -10,6 +10,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/scalar/power_of_two.h>
@@ -59,7 +60,7 @@ class Snapshot {
 /// its angular momentum L. from, to: the evaluations of the part before and after the projection.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
-  const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
+  const LocalMotion before = detail::local_motion(m, from), now = detail::local_motion(m, to);
   const Vec3<double> P = from.R * before.momentum;
   Vec<double, 6> missing;
   missing << to.R.transpose() * P - now.momentum,

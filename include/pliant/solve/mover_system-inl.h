@@ -136,7 +136,10 @@ void MoverSystem::eliminate(const Mover& k) {
   for (const int j : k.neighbours) {
     const int columns = movers_[at(j)].size;
     Above U(above, k.size, columns);
-    for (int c = 0; c < columns; ++c) U.col(c) = (inverse * U.col(c)).eval();
+    if constexpr (N == Eigen::Dynamic)
+      U = (inverse * U).eval();
+    else  // without allocation
+      for (int c = 0; c < columns; ++c) U.col(c) = (inverse * U.col(c)).eval();
     double* left = beside;
     for (const int i : k.neighbours) {
       const int rows = movers_[at(i)].size;
@@ -166,6 +169,8 @@ PLIANT_INLINE void MoverSystem::solve() {
       eliminate<6, 6>(k);
     else if (k.size == 3)
       eliminate<3, Eigen::Dynamic>(k);
+    else if (k.size == 6)
+      eliminate<6, Eigen::Dynamic>(k);
     else
       eliminate<Eigen::Dynamic, Eigen::Dynamic>(k);
   }

@@ -5,30 +5,45 @@
 
 namespace pliant {
 
-/// Chooses the best draft whose pictures take less than kLongest in the mean. The time is assumed to be
-/// proportional to the number of samples, or less.
+/// Lowers the quality of drafts while their pictures take longer than kLongest in the mean, and raises it
+/// again. The time of a picture is that of its samples and of other work. If fewer samples save little time,
+/// the quality is not lowered.
 class DraftQuality {
  public:
   using Quality = WindowRenderer::Quality;
   static constexpr double kLongest = 0.035;  ///< s of wall time
+  static constexpr int kPause = 300;         ///< pictures between two trials of a quality that was no success
 
   Quality quality() const { return quality_; }
 
-  /// Counts a picture of the present quality. seconds: the wall time that it took.
+  /// Counts a picture of the present quality. seconds: the wall time that it took. The first picture of a
+  /// quality does not count, because it may include preparations.
   void add(double seconds) {
-    mean_ = pictures_ == 0 ? seconds : mean_ + kWeight * (seconds - mean_);
-    if (++pictures_ < kTrial) return;
+    if (++pictures_ == 1) return;
+    mean_ = pictures_ == 2 ? seconds : mean_ + kWeight * (seconds - mean_);
+    if (pictures_ <= kTrial) return;
+    const double before = mean_before_fall_;
+    mean_before_fall_ = 0;
     const int level = static_cast<int>(quality_);
-    if (mean_ > kLongest && level > static_cast<int>(Quality::half_draft))
-      change(level - 1);
-    else if (level < static_cast<int>(Quality::draft) && kMargin * mean_ * more_samples(level) < kLongest)
+    if (mean_ > kWorthwhile * before && before > 0) {
       change(level + 1);
+      may_fall_after_ = kPause;
+    } else if (mean_ > kLongest && level > static_cast<int>(Quality::half_draft) &&
+               pictures_ > may_fall_after_) {
+      mean_before_fall_ = mean_;
+      change(level - 1);
+    } else if (level < static_cast<int>(Quality::draft) && mean_ < kLongest &&
+               (kMargin * mean_ * more_samples(level) < kLongest || pictures_ > kPause)) {
+      change(level + 1);
+    }
   }
 
  private:
   static constexpr double kWeight = 0.2;  // of the last picture in the mean
-  static constexpr double kMargin = 1.2;  // so that the quality does not change to and fro
-  static constexpr int kTrial = 8;        // pictures before a change
+  static constexpr double kMargin = 1.2;  // so that the quality does not alternate
+  static constexpr double kWorthwhile =
+      0.85;                         // a fall that leaves more than this share of the time is undone
+  static constexpr int kTrial = 8;  // pictures before a change
 
   /// Ratio of the numbers of samples of the next better draft and of a draft.
   static double more_samples(int level) {
@@ -38,12 +53,13 @@ class DraftQuality {
   }
   void change(int level) {
     quality_ = static_cast<Quality>(level);
-    pictures_ = 0;
+    pictures_ = may_fall_after_ = 0;
   }
 
   Quality quality_ = Quality::draft;
-  double mean_ = 0;
-  int pictures_ = 0;
+  double mean_ = 0, mean_before_fall_ = 0;  // s
+  int pictures_ = 0;                        // of the present quality
+  int may_fall_after_ = 0;                  // pictures of the present quality
 };
 
 }  // namespace pliant

@@ -28,12 +28,13 @@ MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obst
   const int n = static_cast<int>(model.parts().size());
   for (int i = 0; i < n && !rules_; ++i)
     if (deforms_locally(i)) rules_.emplace(model);
-  // Cells in flat regions of parts without nodes are as large as those of the finest mesh of nodes, cell (m).
+  // Cells in flat regions of parts without nodes are at most as large as the mean edge of the finest mesh of
+  // nodes, `cell` (m).
   double cell = std::numeric_limits<double>::infinity();
   std::vector<int> without_nodes;
   auto add_mesh = [&](int i) {
     if (!deforms_locally(i)) return without_nodes.push_back(i);
-    const ContactMesh& mesh = meshes_.try_emplace(i, model.parts()[at(i)], cell).first->second;
+    const ContactMesh& mesh = meshes_.try_emplace(i, model.parts()[at(i)], 0).first->second;
     cell = std::min(cell, mesh.mean_edge());
   };
   for (int i = 0; i < n; ++i) {

@@ -25,8 +25,10 @@ constexpr double kTie = 1e-9;
 /// A point is straight behind a triangle if its squared distances to the triangle and to the plane of the
 /// triangle agree to this share.
 constexpr double kStraightAbove = 1e-6;
-/// Share of squared distances by which the test of faces that a point may be behind is widened for rounding.
-constexpr double kBehindSlack = 1e-5;
+/// The test of faces that a point may be behind is widened for rounding by this share of lengths and of
+/// squares of lengths. The foot of a point that is straight behind a face may be outside the face by less
+/// than kFootOutside times the depth, because kStraightAbove bounds the square of this ratio.
+constexpr double kBehindSlack = 1e-5, kFootOutside = 1.1e-3;
 /// An edge is not sharp if the sine of the angle between the normals of its triangles is at most this.
 constexpr double kNoTurn = 1e-6;
 /// For the search of triangles of an obstacle, the box of a part is enlarged by this share of the largest
@@ -169,14 +171,12 @@ class NearestOf {
       : faces_(faces),
         centres_(static_cast<Eigen::Index>(faces.size()), 3),
         normals_(centres_.rows(), 3),
-        offsets_(centres_.rows()),
-        square_radii_(centres_.rows()) {
+        radii_(centres_.rows()) {
     for (Eigen::Index k = 0; k < centres_.rows(); ++k) {
       const Candidates::Face& face = faces[static_cast<std::size_t>(k)];
       centres_.row(k) = face.centre.transpose();
       normals_.row(k) = face.normal.transpose();
-      offsets_[k] = face.normal.dot(face.centre);
-      square_radii_[k] = face.radius * face.radius;
+      radii_[k] = face.radius;
     }
   }
 
@@ -188,11 +188,15 @@ class NearestOf {
     squared_distances_.minCoeff(&near);
     const Candidates::Face& face = faces_[static_cast<std::size_t>(near)];
     const double square = square_to(face, nearest_weights(x, face.p0, face.p1, face.p2), x);
-    // A face that x is straight behind is below x, not farther than `face`, and its ball contains the foot.
-    heights_ = normals_.col(0) * x[0] + normals_.col(1) * x[1] + normals_.col(2) * x[2] - offsets_;
-    const double slack = kBehindSlack * (square + squared_distances_[near]);
-    return ((heights_ < std::sqrt(slack)) && (heights_.square() <= square + slack) &&
-            (squared_distances_ - heights_.square() <= square_radii_ + slack))
+    // If x is straight behind its nearest face, it is below the plane of this face, its depth there is at
+    // most its distance from `face`, and the foot of its perpendicular is in the ball of the nearest face or
+    // almost.
+    heights_ = normals_.col(0) * (x[0] - centres_.col(0)) + normals_.col(1) * (x[1] - centres_.col(1)) +
+               normals_.col(2) * (x[2] - centres_.col(2));
+    return ((heights_ <= kBehindSlack * radii_) &&
+            (heights_.square() <= (1 + kBehindSlack) * square + kBehindSlack * radii_.square()) &&
+            (squared_distances_ - heights_.square() <=
+             ((1 + kBehindSlack) * radii_ + kFootOutside * heights_.abs()).square()))
         .any();
   }
 
@@ -246,8 +250,7 @@ class NearestOf {
 
   const std::vector<Candidates::Face>& faces_;
   Eigen::Array<double, Eigen::Dynamic, 3> centres_, normals_;
-  Eigen::ArrayXd offsets_;            // normal times centre, m
-  Eigen::ArrayXd square_radii_;       // m^2
+  Eigen::ArrayXd radii_;              // of the faces, m
   Eigen::ArrayXd squared_distances_;  // from the centres of the faces to x, m^2
   Eigen::ArrayXd heights_;            // of x above the planes of the faces, m
 };

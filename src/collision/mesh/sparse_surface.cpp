@@ -15,9 +15,11 @@ namespace {
 /// A point is on a triangle if it is within this distance, in sizes of the part (Part::size()).
 constexpr double kOnTriangle = 1e-10;
 /// The dynamic parameters of a test differ from their rest values by these shares of their rest values or, if
-/// these are zero, of kProbe. Each parameter differs by its own amount: share * (1 + kUneven * its number).
+/// these are zero, of kProbe. Neighbouring parameters differ by other amounts: share * (1 + kUneven * k) with
+/// the number k of the parameter, modulo kUnevenPeriod.
 constexpr std::array<double, 2> kShares{0.3, -0.2};
 constexpr double kProbe = 1, kUneven = 0.13;
+constexpr int kUnevenPeriod = 13;
 
 /// Returns the values of the parameters at rest and, if some are dynamic, two other sets of values.
 std::vector<ParameterValues<double>> probes(const Part& part) {
@@ -28,7 +30,7 @@ std::vector<ParameterValues<double>> probes(const Part& part) {
     VecMax<double> q_s(n), q_s_dot = VecMax<double>::Zero(n);
     for (int k = 0; k < n; ++k) {
       const double rest = parameters.moving(k).rest_value();
-      q_s[k] = rest + kShares[probe] * (1 + kUneven * k) * (rest == 0 ? kProbe : rest);
+      q_s[k] = rest + kShares[probe] * (1 + kUneven * (k % kUnevenPeriod)) * (rest == 0 ? kProbe : rest);
     }
     all.push_back(parameters.expand<double>(q_s, q_s_dot));
   }
@@ -48,6 +50,7 @@ Eigen::Matrix3Xd test_points(const Part& part, const Surface& surface,
 }
 
 /// Returns whether each point is on one of the triangles of a mesh. points, x: columns, m; within: m.
+/// Triangles thinner than `within` contain no points.
 bool are_on(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles,
             double within) {
   struct Side {
@@ -59,9 +62,12 @@ bool are_on(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& x, const Eig
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     std::array<Vec3<double>, 3> p;
     for (int k = 0; k < 3; ++k) p[static_cast<std::size_t>(k)] = x.col(triangles(k, t));
+    const Vec3<double> normal = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double longest = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+    if (!(normal.norm() > within * longest)) continue;
     Side side;
     side.corner = p[0];
-    side.normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    side.normal = normal.normalized();
     for (std::size_t k = 0; k < 3; ++k) {
       side.inward[k] = side.normal.cross(p[(k + 1) % 3] - p[k]).normalized();
       side.offset[k] = side.inward[k].dot(p[k]);
@@ -71,10 +77,9 @@ bool are_on(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& x, const Eig
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Vec3<double> p = points.col(i);
     const bool on = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
-      if (std::abs(side.normal.dot(p - side.corner)) > within) return false;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (side.inward[k].dot(p) < side.offset[k] - within) return false;
-      return true;
+      bool inside = std::abs(side.normal.dot(p - side.corner)) <= within;
+      for (std::size_t k = 0; k < 3; ++k) inside = inside && side.inward[k].dot(p) >= side.offset[k] - within;
+      return inside;
     });
     if (!on) return false;
   }
@@ -87,7 +92,7 @@ Surface sparse_surface(const Part& part, int resolution, double cell) {
   Surface sparse(part, resolution);
   if (part.shape().mesh() != MeshPattern::ball) return sparse;
   const std::vector<ParameterValues<double>> all = probes(part);
-  std::vector<Eigen::Matrix3Xd> points;
+  std::vector<Eigen::Matrix3Xd> points;  // at all values
   for (const ParameterValues<double>& values : all) points.push_back(test_points(part, sparse, values));
   const Vec3<double> extent = points[0].rowwise().maxCoeff() - points[0].rowwise().minCoeff();
   std::array<int, 3> spacing{1, 1, 1};
@@ -98,7 +103,7 @@ Surface sparse_surface(const Part& part, int resolution, double cell) {
       wider[axis] = 2 * resolution / cells;
       Surface candidate(part, resolution, wider);
       bool same = true;
-      for (std::size_t k = 0; same && k < all.size(); ++k)
+      for (std::size_t k = all.size(); same && k-- > 0;)  // the rest shape is more often flat
         same = are_on(points[k], part.s(candidate.material(), all[k]), candidate.triangles(),
                       kOnTriangle * part.size());
       if (!same) continue;

@@ -33,6 +33,16 @@ int threads_of(Scene& scene, int asked) {
   return std::clamp(automatic_threads(scene), 1, std::max(1, spare));
 }
 
+/// Adds a slider below its label. The label may be longer than the panel; the mouse over it shows it in full.
+/// Returns whether the user moved the slider.
+bool add_slider(const std::string& label, float& value, float low, float high, const char* format,
+                ImGuiSliderFlags flags = 0) {
+  ImGui::TextUnformatted(label.c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", label.c_str());
+  return ImGui::SliderFloat(("##" + label).c_str(), &value, low, high, format,
+                            flags | ImGuiSliderFlags_AlwaysClamp);
+}
+
 }  // namespace
 
 LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
@@ -196,10 +206,12 @@ std::string LiveMotion::save() {
 void LiveMotion::add_to_panel(const std::string& selected) {
   const Snapshot& now = *snapshot_;
   ImGui::Text("t = %.3f s", now.state.time());
-  if (now.running)
+  if (!now.running)
+    ImGui::TextUnformatted("paused");
+  else if (now.speed > 0)
     ImGui::Text("%.2f x real time", now.speed);
   else
-    ImGui::TextUnformatted("paused");
+    ImGui::TextUnformatted("plays");
   if (ImGui::Checkbox("as fast as possible", &fast_))
     run_.set_max_speed(fast_ ? std::numeric_limits<double>::infinity() : 1);
   ImGui::PushItemWidth(kSliderWidth);
@@ -228,16 +240,18 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   if (!now.refusal.empty()) ImGui::TextWrapped("%s", now.refusal.c_str());
 }
 
-/// Adds a slider for each rest value of a part, from 0.3 to 2 times its first value, or from -1 to 1.
+/// Adds a slider for each rest value of a part: of a positive parameter from 0.3 to 2 times its first value,
+/// of others from -2 to 2 times this value, or from -1 to 1 if it is zero.
 void LiveMotion::add_rest_values(const std::string& part) {
   for (std::size_t i = 0; i < rest_values_.size(); ++i) {
     RestValue& rest = rest_values_[i];
     if (rest.part->name() != part) continue;
-    const double a = rest.first != 0 ? 0.3 * rest.first : -1, b = rest.first != 0 ? 2 * rest.first : 1;
+    const double a = rest.first == 0 ? -1 : (rest.range.min > 0 ? 0.3 : -2) * rest.first,
+                 b = rest.first == 0 ? 1 : 2 * rest.first;
     const auto low = static_cast<float>(std::clamp(std::min(a, b), rest.range.min, rest.range.max)),
                high = static_cast<float>(std::clamp(std::max(a, b), rest.range.min, rest.range.max));
     auto value = static_cast<float>(rest.next);
-    if (!ImGui::SliderFloat(rest.parameter.c_str(), &value, low, high, "%.3f")) continue;
+    if (!add_slider(rest.parameter, value, low, high, "%.3f")) continue;
     rest.next = std::clamp<double>(value, rest.range.min, rest.range.max);
     run_.post([i, wanted = rest.next](LiveSimulation& simulation) { simulation.set_rest_value(i, wanted); });
   }
@@ -252,8 +266,8 @@ void LiveMotion::add_stiffnesses(const std::string& part) {
     if (!is_at(spring.a) && !is_at(spring.b)) continue;
     auto value = static_cast<float>(stiffness.next);
     const auto first = static_cast<float>(stiffness.first);
-    if (!ImGui::SliderFloat((spring.name + " (N/m)").c_str(), &value, 0.1f * first, 10 * first, "%.4g",
-                            ImGuiSliderFlags_Logarithmic))
+    if (!add_slider(spring.name + " (N/m)", value, 0.1f * first, 10 * first, "%.4g",
+                    ImGuiSliderFlags_Logarithmic))
       continue;
     stiffness.next = value;
     run_.post(

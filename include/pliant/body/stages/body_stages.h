@@ -105,12 +105,10 @@ void evaluate_part(const Evaluation<S>& e, int i) {
   w.power.setConstant(S(0.0));
   if (m.q0 < 0) return;
   evaluate_mass<S>(m, w);  // 2 mass: M, g_q
-  try {
+  with_name_of_part(m.part->name(), [&] {
     evaluate_own_forces<S>(m, e.gravity, e.t, w, e.dynamics.pool());  // 3 forces without loads
-    if (const auto& changing = e.model().body().changing_gravity) add_gravity_power<S>(m, *changing, e.t, w);
-  } catch (const InvertedElement& failure) {
-    throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
-  }
+  });
+  if (const auto& changing = e.model().body().changing_gravity) add_gravity_power<S>(m, *changing, e.t, w);
   if (!m.loaded) accelerate_freely<S>(e, i);  // 5 accelerations without joints
 }
 

@@ -14,9 +14,16 @@
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/stages/evaluation.h>
+#include <pliant/local/solid/inverted_element.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant::detail {
+
+/// Returns the energies and momenta of a part with local deformation. Throws InvertedElement, with the name
+/// of the part, if an element is inverted.
+inline LocalMotion local_motion(const PartModel& m, const PartWorkspace<double>& w) {
+  return with_name_of_part(m.part->name(), [&] { return m.local->motion(w.v_r, *w.local); });
+}
 
 // Stage 1: positions.
 
@@ -188,7 +195,7 @@ void add_gravity_power(const PartModel& m, const TimeVector& gravity, double t, 
   if (m.local == nullptr)
     m_x += w.R * w.inertia.moment;
   else if constexpr (std::is_same_v<S, double>)
-    m_x += w.R * m.local->motion(w.v_r, *w.local).moment;
+    m_x += w.R * local_motion(m, w).moment;
   for (int k = 0; k < 3; ++k) w.power[static_cast<int>(Work::actuation)] -= m_x[k] * g[k].d;
 }
 

@@ -15,8 +15,8 @@ class ContactMesh {
     int left, right;  ///< triangles; `left` has the edge in the order from, to; right is -1 at a border
   };
 
-  /// m: part of a model that outlives this object. cell: largest size of cells in flat regions of a part
-  /// without nodes, m (sparse_surface()).
+  /// m: part of a model that outlives this object. cell: largest extent of cells in flat regions of a
+  /// part without nodes, m (sparse_surface()); not used for a part with nodes.
   ContactMesh(const PartModel& m, double cell);
 
   const PartModel& part() const { return *part_; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace pliant {
 
@@ -9,5 +10,15 @@ namespace pliant {
 struct InvertedElement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// Returns act(). If it throws InvertedElement, the message gets the name of the part.
+template <class F>
+auto with_name_of_part(const std::string& part, F&& act) {
+  try {
+    return act();
+  } catch (const InvertedElement& failure) {
+    throw InvertedElement("part '" + part + "': " + failure.what());
+  }
+}
 
 }  // namespace pliant
