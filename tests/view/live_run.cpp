@@ -102,7 +102,7 @@ TEST_CASE("a live run does not catch up the time of a slow command") {
   run.wait_for([](LiveSimulation&) { std::this_thread::sleep_for(std::chrono::milliseconds(500)); });
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  CHECK(run.snapshot()->state.time() - before < wall - 0.4);
+  CHECK(run.snapshot()->state.time() - before < wall - 0.3);  // 0.2 s for delays by other processes
 }
 
 TEST_CASE("a snapshot has the drag, its ledger and the message of a command that fails") {
