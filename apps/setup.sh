@@ -97,11 +97,11 @@ pliant_install() {
   pliant_end
 }
 
-# pliant_jobs: prints the number of compile jobs: one for each processor, at most one for each 2 GB of available memory,
+# pliant_jobs: prints the number of compile jobs: one for each processor, at most one for each 2.5 GB of available memory,
 # and at least one.
 pliant_jobs() {
   jobs=$(nproc 2>/dev/null || echo 1)
-  by_memory=$(awk '/^MemAvailable/ { print int($2 / 2000000) }' /proc/meminfo 2>/dev/null)
+  by_memory=$(awk '/^MemAvailable/ { print int($2 / 2500000) }' /proc/meminfo 2>/dev/null)
   if [ -n "$by_memory" ] && [ "$by_memory" -lt "$jobs" ]; then jobs=$by_memory; fi
   if [ "$jobs" -lt 1 ]; then jobs=1; fi
   echo "$jobs"

@@ -1,5 +1,5 @@
 # How pliant is compiled. pliant_options is exported with the libraries, because memory layout and rounding must be the
-# same in the library and in its clients. pliant_warnings is for pliant's own sources only.
+# same in the library and in its clients. pliant_own_sources is for targets of this project only.
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
@@ -11,18 +11,21 @@ target_compile_features(pliant_options INTERFACE cxx_std_17)
 target_compile_definitions(pliant_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 target_compile_options(pliant_options INTERFACE -ffp-contract=off)
 
-add_library(pliant_warnings INTERFACE)
-target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+add_library(pliant_own_sources INTERFACE)
+target_compile_options(pliant_own_sources INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                                  -Wno-psabi)
 if(PLIANT_WERROR)
-  target_compile_options(pliant_warnings INTERFACE -Werror)
+  target_compile_options(pliant_own_sources INTERFACE -Werror)
 endif()
+# GCC collects its own garbage less often: 7 to 20 % less time to compile, for 25 % more memory.
+target_compile_options(pliant_own_sources INTERFACE
+                       "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-expand=400 --param ggc-min-heapsize=1000000>")
 if(PLIANT_NATIVE)
   # Exported too: the calling convention of vectors depends on this option, and a client without it would not link.
   target_compile_options(pliant_options INTERFACE -march=native)
   # GCC 12 reports uninitialised reads in its own AVX-512 intrinsics, and reads outside small matrices that do not
   # happen at run time.
-  target_compile_options(pliant_warnings INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
+  target_compile_options(pliant_own_sources INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()
@@ -55,7 +58,7 @@ function(pliant_library name)
                                                    $<INSTALL_INTERFACE:include>)
   target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
-                                       PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
+                                       PRIVATE $<BUILD_INTERFACE:pliant_own_sources> ${arg_PRIVATE})
   if(PLIANT_UNITY)  # a batch includes sources; GCC warns of their types that have members from unnamed namespaces
     target_compile_options(pliant_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()

@@ -9,6 +9,7 @@
 #include <pliant/deform/deform.h>
 #include <pliant/deform/jet.h>
 #include <pliant/math/scalar/dual.h>
+#include <pliant/math/scalar/inline_all.h>
 #include <pliant/math/scalar/taylor2.h>
 
 namespace pliant {
@@ -42,8 +43,8 @@ bool link_acts(const LinkParameters<P>& parameters) {
 /// Level::rates, one Taylor2 number in parameter k gives s, J, s1 and s2. At Level::jacobian, one dual number
 /// gives s and J.
 template <class Deform, class P, class S>
-[[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
-                                       JetBatch<S>& batch) {
+void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
+                      JetBatch<S>& batch) {
   auto each = [&](auto along, auto&& store) {
     using T = decltype(along);
     const T h(S(half.h.v));
@@ -96,13 +97,9 @@ void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
   }
 }
 
-/// Applies one link to a batch of jets: s <- T(s, h; b), J <- [F J + T_h dh/da, G_T]; the chain rule for the
-/// first and second time derivatives gives s1 and s2. Computes only the quantities of batch.level. A link
-/// that does not act changes nothing.
+/// The formulas of apply_link() for a link that acts.
 template <class Deform, class P, class S>
-[[gnu::flatten]] void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters,
-                                 JetBatch<S>& batch) {
-  if (!link_acts<Deform>(parameters)) return;
+void transform_jets(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
   constexpr int K = deform_size<Deform>;
   const S h(half.h.v);
   Vec<S, K> b;
@@ -159,6 +156,15 @@ template <class Deform, class P, class S>
   else
     each(std::false_type{});
   batch.n_columns += moving;
+}
+
+/// Applies one link to a batch of jets: s <- T(s, h; b), J <- [F J + T_h dh/da, G_T]; the chain rule for the
+/// first and second time derivatives gives s1 and s2. Computes only the quantities of batch.level. A link
+/// that does not act changes nothing.
+template <class Deform, class P, class S>
+void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
+  if (link_acts<Deform>(parameters))
+    inline_all_if<std::is_same_v<P, double>>([&] { transform_jets<Deform>(half, parameters, batch); });
 }
 
 }  // namespace pliant

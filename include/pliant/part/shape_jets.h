@@ -7,6 +7,7 @@
 
 #include <pliant/deform/jet.h>
 #include <pliant/deform/link.h>
+#include <pliant/math/scalar/inline_all.h>
 #include <pliant/shape/shape.h>
 
 namespace pliant {
@@ -14,8 +15,8 @@ namespace pliant {
 /// Fills the batch if parameter a_k is the only dynamic parameter of the shape. At Level::rates one Taylor2
 /// number in a_k gives e, J, s1 and s2; at Level::jacobian a dual number in a_k gives e and J.
 template <class Shape, class P, class S, class U>
-[[gnu::flatten]] void shape_jets_alone(int k, const LinkParameters<P>& parameters,
-                                       const Material<U>* material, JetBatch<S>& batch) {
+void shape_jets_alone(int k, const LinkParameters<P>& parameters, const Material<U>* material,
+                      JetBatch<S>& batch) {
   auto evaluate = [&](auto along, auto&& store) {
     using T = decltype(along);
     Vec<T, shape_size<Shape>> a;
@@ -43,13 +44,9 @@ template <class Shape, class P, class S, class U>
   batch.n_columns = 1;
 }
 
-/// Fills the batch with e and, if batch.level requires them, J and the rates s1 = J a_dot and s2 = Jdot
-/// a_dot. Sets the number of columns of J. If no parameter of the shape is dynamic, or at Level::position, s1
-/// and s2 are zero and J has no columns. P: scalar of the parameters; S: scalar of the jets; U: scalar of the
-/// material points.
+/// The formulas of shape_jets().
 template <class Shape, class P, class S, class U>
-[[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
-                                 JetBatch<S>& batch) {
+void fill_shape_jets(const LinkParameters<P>& parameters, const Material<U>* material, JetBatch<S>& batch) {
   constexpr int K = shape_size<Shape>;
   Vec<S, K> a;
   int n_dynamic = 0, last = 0;
@@ -105,6 +102,15 @@ template <class Shape, class P, class S, class U>
   else
     evaluate(std::false_type{});
   batch.n_columns = n_dynamic;
+}
+
+/// Fills the batch with e and, if batch.level requires them, J and the rates s1 = J a_dot and s2 = Jdot
+/// a_dot. Sets the number of columns of J. If no parameter of the shape is dynamic, or at Level::position, s1
+/// and s2 are zero and J has no columns. P: scalar of the parameters; S: scalar of the jets; U: scalar of the
+/// material points.
+template <class Shape, class P, class S, class U>
+void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material, JetBatch<S>& batch) {
+  inline_all_if<std::is_same_v<P, double>>([&] { fill_shape_jets<Shape>(parameters, material, batch); });
 }
 
 /// Returns the half height h(a), its first and second derivatives by t along a + t a_dot, and its derivatives
