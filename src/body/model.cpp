@@ -192,7 +192,6 @@ void Model::evaluate_rigid_ports() {
 }
 
 void Model::make_rigid_islands() {
-  if (body_->changing_gravity) return;  // the power of gravity needs the positions of all parts
   for (Island& island : islands_) {
     if (!RigidIsland::applies_to(*this, island)) continue;
     island.rigid = static_cast<int>(rigid_islands_.size());

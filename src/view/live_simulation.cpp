@@ -51,6 +51,7 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
   scene.body.stop_rate = rate_;
   free_rest_values();
   find_stiffnesses();
+  find_parameter_stiffnesses();
   if (scene.integrator == kAutomatic)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
@@ -105,6 +106,35 @@ void LiveSimulation::set_stiffness(std::size_t i, double value) {
   continue_from(std::move(state));
 }
 
+void LiveSimulation::find_parameter_stiffnesses() {
+  for (std::size_t i = 0; i < rest_values_.size(); ++i) {
+    const Part& part = *rest_values_[i].part;
+    const int k = part.parameters().dynamic_number(rest_values_[i].parameter);
+    const auto is_driven = [&](const auto& drive) { return drive->on.part == &part && drive->on.index == k; };
+    const auto& drives = scene_->body.drives();
+    const double stiffness = part.K_s()(k, k);
+    if (!(stiffness > 0) || std::any_of(drives.begin(), drives.end(), is_driven)) continue;
+    parameter_stiffnesses_.push_back({i, stiffness, nullptr, stiffness});
+  }
+}
+
+void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
+  ParameterStiffness& stiffness = parameter_stiffnesses_.at(i);
+  const RestValue& rest = rest_values_[stiffness.rest];
+  const std::string name = rest.part->name() + "." + rest.parameter;
+  if (!(value >= stiffness.first) || !std::isfinite(value))
+    throw std::invalid_argument("a stiffness of " + std::to_string(value) + " for " + name +
+                                "; expected a number of at least " + std::to_string(stiffness.first) +
+                                ", the stiffness in the scene");
+  stiffness.next = value;
+  if (stiffness.added) return;
+  stiffness.added = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{0});
+  Drive& servo = scene_->body.drive(name, *rest.part, rest.parameter);
+  servo.target = TimeFunction(rest.path);
+  servo.stiffness = TimeFunction(stiffness.added);
+  continue_from(simulation_->state());
+}
+
 void LiveSimulation::set_rest_value(std::size_t i, double value) {
   RestValue& rest = rest_values_.at(i);
   if (!rest.range.contains(value))
@@ -127,6 +157,8 @@ void LiveSimulation::extend_paths(double now, double next) {
   for (RestValue& rest : rest_values_) extend(*rest.path, rest.next, now, next);
   for (SpringStiffness& stiffness : stiffnesses_)
     if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
+  for (ParameterStiffness& stiffness : parameter_stiffnesses_)
+    if (stiffness.added) extend(*stiffness.added, stiffness.next - stiffness.first, now, next);
 }
 
 void LiveSimulation::rebuild() {
@@ -143,6 +175,10 @@ void LiveSimulation::reset() {
   for (SpringStiffness& stiffness : stiffnesses_) {
     stiffness.spring->stiffness = stiffness.next = stiffness.first;
     stiffness.path.reset();
+  }
+  for (ParameterStiffness& stiffness : parameter_stiffnesses_) {
+    stiffness.next = stiffness.first;
+    if (stiffness.added) stiffness.added->restart(0, 0);
   }
   intervals_ = 0;
   rebuild();

@@ -50,14 +50,19 @@ Json spring_of(const Drag& drag) {
   return json;
 }
 
+/// Returns the object of a parameter in the document. A number is its rest value.
+Json& parameter_of(Json& document, const LiveSimulation& simulation, const RestValue& rest) {
+  const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
+  Json& parameter = document["parts"][number]["parameters"][rest.parameter];
+  if (!parameter.is_object()) parameter = Json{{"rest", rest.first}};
+  return parameter;
+}
+
 /// Writes the rest values that the user has changed into the parts of the document.
 void set_rest_values(Json& document, const LiveSimulation& simulation) {
   for (const RestValue& rest : simulation.rest_values()) {
     if (rest.path->times().size() == 1) continue;
-    const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
-    Json& parameter = document["parts"][number]["parameters"][rest.parameter];
-    if (!parameter.is_object()) parameter = Json::object();
-    parameter["rest"] = key_frames_of(*rest.path);
+    parameter_of(document, simulation, rest)["rest"] = key_frames_of(*rest.path);
   }
 }
 
@@ -65,6 +70,18 @@ void set_rest_values(Json& document, const LiveSimulation& simulation) {
 void set_stiffnesses(Json& document, const LiveSimulation& simulation) {
   for (const SpringStiffness& stiffness : simulation.stiffnesses())
     if (stiffness.path) document["springs"][stiffness.number]["stiffness"] = key_frames_of(*stiffness.path);
+}
+
+/// Adds the servos that raise stiffnesses of parameters to the parts of the document.
+void set_parameter_stiffnesses(Json& document, const LiveSimulation& simulation) {
+  for (const ParameterStiffness& stiffness : simulation.parameter_stiffnesses()) {
+    if (!stiffness.added || stiffness.added->times().size() == 1) continue;
+    const RestValue& rest = simulation.rest_values()[stiffness.rest];
+    const bool moves = rest.path->times().size() > 1;
+    parameter_of(document, simulation, rest)["drive"] = {
+        {"target", moves ? key_frames_of(*rest.path) : Json(rest.first)},
+        {"stiffness", key_frames_of(*stiffness.added)}};
+  }
 }
 
 /// Makes the paths of mesh files relative to another folder.
@@ -79,13 +96,6 @@ void move_meshes(Json& document, const std::filesystem::path& from, const std::f
 }
 
 }  // namespace
-
-bool repeats_exactly(const LiveSimulation& simulation) {
-  const Model& model = simulation.simulation().model();
-  const auto is_rigid = [&](const Island& island) { return RigidIsland::applies_to(model, island); };
-  return simulation.gravity() == nullptr ||
-         std::none_of(model.islands().begin(), model.islands().end(), is_rigid);
-}
 
 std::string saved_scene(const LiveSimulation& simulation, const std::filesystem::path& scene_folder,
                         const std::filesystem::path& folder) {
@@ -107,6 +117,7 @@ std::string saved_scene(const LiveSimulation& simulation, const std::filesystem:
   for (const Drag& drag : simulation.drags()) document["springs"].push_back(spring_of(drag));
   if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
   set_rest_values(document, simulation);
+  set_parameter_stiffnesses(document, simulation);
   move_meshes(document, scene_folder, folder);
   return document.dump(1) + "\n";
 }

@@ -25,6 +25,15 @@ const char* const kScene = R"({
   "camera": {"eye": [0.7, -6, 1.5], "target": [0.7, 0, 0.5]}
 })";
 
+const char* const kSpringScene = R"({
+  "gravity": [0, 0, 0], "time": {"tolerance": 1e-8},
+  "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": {"rest": 0.4, "stiffness": 4000}},
+             "position": [0, 0, 0.5]}],
+  "springs": [{"name": "band", "from": {"world": [2.5, 0, 0.5]}, "to": {"part": "ball", "at": {"u": 0, "v": 0}},
+               "stiffness": 5, "damping": 0.1}],
+  "camera": {"eye": [0.7, -6, 1.5], "target": [0.7, 0, 0.5]}
+})";
+
 /// Runs a shell command on a virtual display, with `folder` as its working folder. Returns its standard
 /// output.
 std::string on_display(const NewFolder& folder, const std::string& command) {
@@ -137,6 +146,55 @@ wait $program
   CHECK((x - report.held).norm() <= 1e-6);
   CHECK(report.held.x() > 0.3);  // the ball has followed the mouse to the right and upwards
   CHECK(report.held.z() > 0.5);
+}
+
+TEST_CASE("sliders of the panel change gravity, a rest value and stiffnesses, and the saved scene has them",
+          "[long]") {
+  if (no_display()) return;
+  const NewFolder folder;
+  set_bytes(folder / "scene.json", kSpringScene);
+  // A click on the ball selects it. Then the panel has sliders for its radius, the stiffness of the radius
+  // and its spring. Each slider is moved to the right.
+  set_bytes(folder / "mouse.sh", viewer("scene.json --script script.txt --out played.json") + R"( &
+program=$!
+for i in $(seq 100); do
+  window=$(xdotool search --name 'pliant: scene' 2>/dev/null | head -n 1) && [ -n "$window" ] && break
+  sleep 0.1
+done
+sleep 2
+move() {  # X Y X_END: the mouse moves with its button held
+  xdotool mousemove --window "$window" "$1" "$2"; sleep 0.3
+  xdotool mousedown 1; sleep 0.3
+  xdotool mousemove --window "$window" "$3" "$2"; sleep 0.3
+  xdotool mouseup 1; sleep 0.3
+}
+move 380 270 380
+move 38 150 50
+move 75 190 110
+move 25 230 90
+move 83 270 120
+wait $program
+)");
+  set_bytes(folder / "script.txt",
+            "key space\nuntil 10\nkey space\npictures 5\nphotograph window.png\nkey w\n");
+  on_display(folder, "sh mouse.sh");
+  Diagnostics diagnostics;
+  const std::unique_ptr<Scene> scene = read_scene((folder / "played.json").string(), {}, diagnostics);
+  REQUIRE(scene != nullptr);
+  CHECK(scene->body.gravity_at(0) == Vec3<double>::Zero());
+  CHECK(scene->body.gravity_at(9).x() > 5);
+  const TimeFunction& radius = scene->body.parts()[0]->parameters().moving(0).rest;
+  CHECK(radius.value(0) == 0.4);
+  CHECK(radius.value(9) > 0.45);
+  REQUIRE(scene->body.drives().size() == 1);
+  const Drive& servo = *scene->body.drives().front();
+  CHECK(servo.name == "ball.r");
+  CHECK(servo.stiffness.of_time().value(0) == 0);
+  CHECK(servo.stiffness.of_time().value(9) > 4000);
+  const Spring& spring = *scene->body.springs().front();
+  REQUIRE(spring.name == "band");
+  CHECK(spring.stiffness.of_time().value(0) == 5);
+  CHECK(spring.stiffness.of_time().value(9) > 10);
 }
 
 TEST_CASE("a build without a window names the packages to install") {

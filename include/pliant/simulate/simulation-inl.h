@@ -374,7 +374,11 @@ PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before
   // The work of forces and drives on resting bodies is computed for a motion that the contacts prevent.
   // Short steps limit the error of this work.
   const bool has_forces = !model_.forces().empty() || !model_.distributed_forces().empty();
-  if (!may_double || has_forces || !model_.drives().empty()) {
+  const double t = attempt_start_.time(), end = t + result.length;
+  const bool has_drives =
+      std::any_of(model_.drives().begin(), model_.drives().end(),
+                  [&](const DriveModel& m) { return m.drive->may_act(t) || m.drive->may_act(end); });
+  if (!may_double || has_forces || has_drives) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
     if (!may_double || share > 1) {
       result.order = 0;

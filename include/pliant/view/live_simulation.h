@@ -53,6 +53,15 @@ struct SpringStiffness {
   double next;                       ///< value at the end of the next interval, N/m
 };
 
+/// The stiffness of a parameter of a part, which the user can raise: a servo (body/actuation/drive.h) pulls
+/// the parameter to its rest value, in addition to the stiffness of the scene.
+struct ParameterStiffness {
+  std::size_t rest;                   ///< number of the parameter in LiveSimulation::rest_values()
+  double first;                       ///< value in the scene, N/m or N m: the diagonal entry of K_s
+  std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far; nullptr without a servo
+  double next;                        ///< value at the end of the next interval, that of the servo included
+};
+
 /// Advances a scene by intervals of equal length, 1 / rate(). All actions of the user take effect between two
 /// intervals, so that the motion can be repeated to the last bit (save_scene.h).
 class LiveSimulation {
@@ -106,6 +115,14 @@ class LiveSimulation {
   /// std::invalid_argument for a value that is negative or not finite.
   void set_stiffness(std::size_t i, double value);
 
+  /// The stiffnesses of those parameters in rest_values() that have one and no drive in the scene. Their
+  /// order does not change.
+  const std::vector<ParameterStiffness>& parameter_stiffnesses() const { return parameter_stiffnesses_; }
+  /// Changes the stiffness of a parameter linearly within the next interval. i: its number in
+  /// parameter_stiffnesses(); value: N/m or N m. The energy of the servo is work of actuation. Throws
+  /// std::invalid_argument for a value that is smaller than that of the scene, or not finite.
+  void set_parameter_stiffness(std::size_t i, double value);
+
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
   /// The path of gravity; nullptr if the user has not changed it.
@@ -114,6 +131,7 @@ class LiveSimulation {
  private:
   void free_rest_values();
   void find_stiffnesses();
+  void find_parameter_stiffnesses();
   void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);
@@ -129,6 +147,7 @@ class LiveSimulation {
   std::unique_ptr<GrowingPath> gravity_;
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
+  std::vector<ParameterStiffness> parameter_stiffnesses_;
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };
 

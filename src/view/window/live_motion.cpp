@@ -59,6 +59,7 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
   run_.wait_for([&](LiveSimulation& simulation) {
     rest_values_ = simulation.rest_values();
     stiffnesses_ = simulation.stiffnesses();
+    parameter_stiffnesses_ = simulation.parameter_stiffnesses();
   });
   show_again();
   const State& state = snapshot_->state;
@@ -150,6 +151,7 @@ void LiveMotion::reset() {
   run_.reset();
   for (RestValue& rest : rest_values_) rest.next = rest.first;
   for (SpringStiffness& stiffness : stiffnesses_) stiffness.next = stiffness.first;
+  for (ParameterStiffness& stiffness : parameter_stiffnesses_) stiffness.next = stiffness.first;
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
 }
 
@@ -192,15 +194,12 @@ void LiveMotion::release() {
 
 std::string LiveMotion::save() {
   std::string text;
-  bool exact = true;
   run_.wait_for([&](LiveSimulation& simulation) {
     text = saved_scene(simulation, options_.scene_folder, options_.saved.parent_path());
-    exact = repeats_exactly(simulation);
   });
   std::ofstream file(options_.saved);
   if (!(file << text).flush()) return "cannot write " + options_.saved.string();
-  return "saved in " + options_.saved.string() +
-         (exact ? "" : "; it repeats the motion up to rounding, because gravity was changed");
+  return "saved in " + options_.saved.string();
 }
 
 void LiveMotion::add_to_panel(const std::string& selected) {
@@ -222,6 +221,7 @@ void LiveMotion::add_to_panel(const std::string& selected) {
     run_.post([wanted](LiveSimulation& simulation) { simulation.set_gravity(wanted); });
   }
   add_rest_values(selected);
+  add_parameter_stiffnesses(selected);
   add_stiffnesses(selected);
   ImGui::PopItemWidth();
   ImGui::TextUnformatted("forces of");
@@ -254,6 +254,24 @@ void LiveMotion::add_rest_values(const std::string& part) {
     if (!add_slider(rest.parameter, value, low, high, "%.3f")) continue;
     rest.next = std::clamp<double>(value, rest.range.min, rest.range.max);
     run_.post([i, wanted = rest.next](LiveSimulation& simulation) { simulation.set_rest_value(i, wanted); });
+  }
+}
+
+/// Adds a slider for the stiffness of each parameter of a part, from 1 to 100 times its first value.
+void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
+  for (std::size_t i = 0; i < parameter_stiffnesses_.size(); ++i) {
+    ParameterStiffness& stiffness = parameter_stiffnesses_[i];
+    const RestValue& rest = rest_values_[stiffness.rest];
+    if (rest.part->name() != part) continue;
+    auto value = static_cast<float>(stiffness.next);
+    const auto first = static_cast<float>(stiffness.first);
+    if (!add_slider("stiffness of " + rest.parameter, value, first, 100 * first, "%.4g",
+                    ImGuiSliderFlags_Logarithmic))
+      continue;
+    stiffness.next = std::max<double>(value, stiffness.first);
+    run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
+      simulation.set_parameter_stiffness(i, wanted);
+    });
   }
 }
 

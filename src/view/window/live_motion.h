@@ -40,12 +40,14 @@ class LiveMotion final : public Motion {
   void add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color);
   void add_rest_values(const std::string& part);
   void add_stiffnesses(const std::string& part);
+  void add_parameter_stiffnesses(const std::string& part);
 
   Scene* scene_;
   ViewOptions options_;
   LiveRun run_;  // made before model_, because it may still change the parts
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
+  std::vector<ParameterStiffness> parameter_stiffnesses_;
   Model model_;  // of the picture; the simulation has its own, which changes with every drag
   SurfacePoints points_;
   StatePicture shown_;

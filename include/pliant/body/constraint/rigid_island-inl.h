@@ -194,6 +194,18 @@ PLIANT_INLINE void RigidIsland::accelerate(const Model& model, const VecX<double
   }
 }
 
+PLIANT_INLINE Vec3<double> RigidIsland::mass_moment(const VecX<double>& q, const RigidWorkspace& now) const {
+  Vec3<double> moment = Vec3<double>::Zero();
+  for (std::size_t i = 0; i < fours_.size(); ++i) {
+    const Four& constants = fours_[i];
+    const Vec3<Pack> centre = now.fours[i].R.lazyProduct(constants.centre);
+    for (int lane = 0; lane < constants.count; ++lane)
+      for (int k = 0; k < 3; ++k)
+        moment[k] += (q[constants.q0[at(lane)] + k] + centre[k][lane]) / constants.inverse_mass[lane];
+  }
+  return moment;
+}
+
 [[gnu::flatten]] PLIANT_INLINE void RigidIsland::place(const Four& constants, const VecX<double>& q,
                                                        const VecX<double>& v, const Vec3<Pack>& gravity,
                                                        RigidWorkspace& now,

@@ -75,6 +75,10 @@ class RigidIsland {
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
+  /// Returns the sum over the parts of mass times position of the centre of mass, kg m, world. q: of the last
+  /// evaluation.
+  Vec3<double> mass_moment(const VecX<double>& q, const RigidWorkspace& now) const;
+
   /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and |C_dot| <=
   /// per_length * rate * length + per_size * |v|. length: JointModel::length; |c|, |v|: the largest entries
   /// of c, and of c_dot and of omega times the distance to the joint. per_length and per_size have no unit.

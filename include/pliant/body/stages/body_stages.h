@@ -241,9 +241,14 @@ void evaluate_islands(const Evaluation<S>& e) {
 template <class S>
 void evaluate_rigid_islands(const Evaluation<S>& e) {
   if constexpr (std::is_same_v<S, double>)
-    for (std::size_t k = 0; k < e.work.rigid.size(); ++k)
-      if (e.work.rigid[k].used)
-        e.model().rigid_islands()[k].accelerate(e.model(), e.q, e.v, e.gravity, e.work, e.work.rigid[k]);
+    for (std::size_t k = 0; k < e.work.rigid.size(); ++k) {
+      if (!e.work.rigid[k].used) continue;
+      const RigidIsland& island = e.model().rigid_islands()[k];
+      island.accelerate(e.model(), e.q, e.v, e.gravity, e.work, e.work.rigid[k]);
+      if (const auto& changing = e.model().body().changing_gravity)
+        e.work.power[static_cast<int>(Work::actuation)] +=
+            gravity_power<double>(*changing, e.t, island.mass_moment(e.q, e.work.rigid[k]));
+    }
 }
 
 // Stage 5: accelerations.

@@ -187,16 +187,25 @@ void add_elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
         part.continuum()->add_force(part, w.q_s, w.q_s_dot, part.beta(), w.f.tail(n), w.counters);
 }
 
-/// Adds the power of a gravity that changes in time, -m g_dot . x at the centre of mass.
+/// Returns the power of a gravity that changes in time at time t (s), -g_dot . m_x. m_x: mass times position
+/// of the centre of mass, kg m, world.
+template <class S>
+S gravity_power(const TimeVector& gravity, double t, const Vec3<S>& m_x) {
+  const Vec3<Taylor2<double>> g = gravity.at(t);
+  S power(0.0);
+  for (int k = 0; k < 3; ++k) power -= m_x[k] * g[k].d;
+  return power;
+}
+
+/// Adds the power of a gravity that changes in time to the powers of a part.
 template <class S>
 void add_gravity_power(const PartModel& m, const TimeVector& gravity, double t, PartWorkspace<S>& w) {
-  const Vec3<Taylor2<double>> g = gravity.at(t);
   Vec3<S> m_x = w.c * S(m.part->total_mass());
   if (m.local == nullptr)
     m_x += w.R * w.inertia.moment;
   else if constexpr (std::is_same_v<S, double>)
     m_x += w.R * local_motion(m, w).moment;
-  for (int k = 0; k < 3; ++k) w.power[static_cast<int>(Work::actuation)] -= m_x[k] * g[k].d;
+  w.power[static_cast<int>(Work::actuation)] += gravity_power<S>(gravity, t, m_x);
 }
 
 /// Subtracts nu M v, the drag, from the forces and adds its power.
