@@ -12,8 +12,8 @@ target_compile_definitions(pliant_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES
 target_compile_options(pliant_options INTERFACE -ffp-contract=off)
 
 add_library(pliant_own_sources INTERFACE)
-target_compile_options(pliant_own_sources INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                                 -Wno-psabi)
+target_compile_options(pliant_own_sources INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                                                    -Wno-sign-conversion -Wno-psabi)
 if(PLIANT_WERROR)
   target_compile_options(pliant_own_sources INTERFACE -Werror)
 endif()
@@ -26,13 +26,13 @@ if(PLIANT_NATIVE)
   # GCC 12 reports uninitialised reads in its own AVX-512 intrinsics, and reads outside small matrices that do not
   # happen at run time.
   target_compile_options(pliant_own_sources INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
-                                                   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
-                                                   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+                                                      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
+                                                      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()
 if(PLIANT_SANITIZE)
   # Null pointers and misaligned packets (SIMD vectors) crash even without checks. The checks that are switched off are done at
   # each access, and would double the time to compile and to run.
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size,pointer-overflow
                       -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
   add_compile_definitions(PLIANT_SANITIZED)  # for tests that sanitizers slow down, and tests that count allocations

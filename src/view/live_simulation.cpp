@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -51,10 +52,10 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
   scene.body.stop_rate = rate_;
   free_rest_values();
   find_stiffnesses();
-  find_parameter_stiffnesses();
   if (scene.integrator == kAutomatic)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
+  find_parameter_stiffnesses();
 }
 
 /// Makes the rest values that the user can change functions of time.
@@ -112,9 +113,10 @@ void LiveSimulation::find_parameter_stiffnesses() {
     const int k = part.parameters().dynamic_number(rest_values_[i].parameter);
     const auto is_driven = [&](const auto& drive) { return drive->on.part == &part && drive->on.index == k; };
     const auto& drives = scene_->body.drives();
+    if (part.local() != nullptr && simulation_->integrator().local_is_implicit()) continue;
     const double stiffness = part.K_s()(k, k);
     if (!(stiffness > 0) || std::any_of(drives.begin(), drives.end(), is_driven)) continue;
-    parameter_stiffnesses_.push_back({i, stiffness, nullptr, stiffness});
+    parameter_stiffnesses_.push_back({i, stiffness, nullptr, nullptr, stiffness});
   }
 }
 
@@ -122,16 +124,18 @@ void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
   ParameterStiffness& stiffness = parameter_stiffnesses_.at(i);
   const RestValue& rest = rest_values_[stiffness.rest];
   const std::string name = rest.part->name() + "." + rest.parameter;
-  if (!(value >= stiffness.first) || !std::isfinite(value))
-    throw std::invalid_argument("a stiffness of " + std::to_string(value) + " for " + name +
-                                "; expected a number of at least " + std::to_string(stiffness.first) +
-                                ", the stiffness in the scene");
+  if (!(value >= stiffness.first) || !std::isfinite(value)) {
+    std::ostringstream message;
+    message << "a stiffness of " << value << " for " << name << "; expected a number of at least "
+            << stiffness.first << ", the stiffness in the scene";
+    throw std::invalid_argument(message.str());
+  }
   stiffness.next = value;
-  if (stiffness.added) return;
+  if (stiffness.servo != nullptr || value == stiffness.first) return;
   stiffness.added = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{0});
-  Drive& servo = scene_->body.drive(name, *rest.part, rest.parameter);
-  servo.target = TimeFunction(rest.path);
-  servo.stiffness = TimeFunction(stiffness.added);
+  stiffness.servo = &scene_->body.drive(name, *rest.part, rest.parameter);
+  stiffness.servo->target = TimeFunction(rest.path);
+  stiffness.servo->stiffness = TimeFunction(stiffness.added);
   continue_from(simulation_->state());
 }
 
@@ -158,7 +162,7 @@ void LiveSimulation::extend_paths(double now, double next) {
   for (SpringStiffness& stiffness : stiffnesses_)
     if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
   for (ParameterStiffness& stiffness : parameter_stiffnesses_)
-    if (stiffness.added) extend(*stiffness.added, stiffness.next - stiffness.first, now, next);
+    if (stiffness.servo != nullptr) extend(*stiffness.added, stiffness.next - stiffness.first, now, next);
 }
 
 void LiveSimulation::rebuild() {
@@ -178,7 +182,8 @@ void LiveSimulation::reset() {
   }
   for (ParameterStiffness& stiffness : parameter_stiffnesses_) {
     stiffness.next = stiffness.first;
-    if (stiffness.added) stiffness.added->restart(0, 0);
+    if (stiffness.servo != nullptr) scene_->body.remove(*stiffness.servo);
+    stiffness.servo = nullptr;
   }
   intervals_ = 0;
   rebuild();

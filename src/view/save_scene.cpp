@@ -1,6 +1,5 @@
 #include <pliant/view/save_scene.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -75,7 +74,7 @@ void set_stiffnesses(Json& document, const LiveSimulation& simulation) {
 /// Adds the servos that raise stiffnesses of parameters to the parts of the document.
 void set_parameter_stiffnesses(Json& document, const LiveSimulation& simulation) {
   for (const ParameterStiffness& stiffness : simulation.parameter_stiffnesses()) {
-    if (!stiffness.added || stiffness.added->times().size() == 1) continue;
+    if (stiffness.servo == nullptr || stiffness.added->times().size() == 1) continue;
     const RestValue& rest = simulation.rest_values()[stiffness.rest];
     const bool moves = rest.path->times().size() > 1;
     parameter_of(document, simulation, rest)["drive"] = {

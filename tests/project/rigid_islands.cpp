@@ -4,6 +4,7 @@
 
 #include <pliant/body/constraint/rigid_island.h>
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/math/time/linear_keys.h>
 #include <pliant/project/project.h>
 
 #include "draws.h"
@@ -87,6 +88,8 @@ TEST_CASE("rigid parts on ball joints: the specialised and the general evaluatio
   const int n = GENERATE(1, 2, 3, 4, 5, 9, 18), loops = GENERATE(0, 1);
   MultiBody body;
   add_hanging_boxes(body, n, loops, static_cast<std::uint64_t>(10 * n + loops));
+  body.changing_gravity =
+      TimeVector(0.5, linear_key_frames({0, 1}, {0, 3}), linear_key_frames({0, 1}, {-9, -7}));
   Simulation simulation(body, "rk4");
   const Model& model = simulation.model();
   REQUIRE(model.rigid_islands().size() == 1);
@@ -98,7 +101,8 @@ TEST_CASE("rigid parts on ball joints: the specialised and the general evaluatio
     simulation.dynamics().rates(state.time(), state.q, state.v, state, special);
     REQUIRE(special.rigid[0].used);
     CHECK((special.v_dot - general.v_dot).norm() <= 1e-11 * general.v_dot.norm());
-    CHECK((special.power - general.power).norm() == 0);
+    CHECK(general.power.norm() > 0);
+    CHECK((special.power - general.power).norm() <= 1e-12 * general.power.norm());
     const double before = gap(simulation);
     for (int i = 0; i < 10; ++i) simulation.step(0.005);
     CHECK(gap(simulation) <= std::max(before, 1e-12));

@@ -362,6 +362,46 @@ TEST_CASE("a reset simulation has the first stiffnesses") {
   CHECK(same_bits(live.simulation().state().q, other.simulation().state().q));
 }
 
+TEST_CASE("a reset simulation has the first stiffnesses of parameters, and can raise them again") {
+  const std::unique_ptr<Scene> scene = parse(kBar), fresh = parse(kBar);
+  LiveSimulation live(*scene), other(*fresh);
+  live.set_parameter_stiffness(0, 900);
+  for (int k = 0; k < 10; ++k) live.advance();
+  live.reset();
+  CHECK(scene->body.drives().empty());
+  for (LiveSimulation* each : {&live, &other})
+    for (int k = 0; k < 20; ++k) {
+      if (k == 5) each->set_rest_value(0, 0.3);
+      if (k == 10) each->set_parameter_stiffness(0, 700);
+      each->advance();
+    }
+  CHECK(same_bits(live.simulation().state().q, other.simulation().state().q));
+  CHECK(saved_scene(live, ".", ".") == saved_scene(other, ".", "."));
+}
+
+TEST_CASE("a raised stiffness of a sleeping part is repeated to the last bit") {
+  check_replay(R"({"time": {"tolerance": 1e-6},
+    "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": {"rest": 0.1, "stiffness": 20000}},
+               "position": [0, 0, 0.101], "beta": 0.01, "alpha": 5}],
+    "contact": {"friction": 0.5, "sleep": {"speed": 0.01, "after": 0.1}, "planes": [{"name": "floor"}]}})",
+               120, [](LiveSimulation& live, int k) {
+                 if (k == 60) live.set_parameter_stiffness(0, 50000);
+                 if (k == 90) live.set_parameter_stiffness(0, 20000);
+               });
+}
+
+TEST_CASE("parameters with a stiffness matrix can be made stiffer, and are saved with their rest values") {
+  check_replay(R"({"time": {"step": 0.002, "integrator": "rk4"}, "gravity": [0, 0, 0],
+    "parts": [{"name": "bar", "shape": "box", "deformations": ["bend", "taper"],
+               "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "taper.tx": 0.1, "bend.angle": {"rest": 0, "initial": 0.3}},
+               "stiffness_matrix": {"parameters": ["bend.angle", "taper.tx"], "K": [[300, 20], [20, 200]]}}]})",
+               40, [](LiveSimulation& live, int k) {
+                 REQUIRE(live.parameter_stiffnesses().size() == 2);
+                 if (k == 10) live.set_parameter_stiffness(1, 800);
+                 if (k == 20) live.set_parameter_stiffness(0, 600);
+               });
+}
+
 TEST_CASE("a reset simulation repeats its first motion") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
   LiveSimulation live(*scene);

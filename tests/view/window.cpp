@@ -154,7 +154,7 @@ TEST_CASE("sliders of the panel change gravity, a rest value and stiffnesses, an
   const NewFolder folder;
   set_bytes(folder / "scene.json", kSpringScene);
   // A click on the ball selects it. Then the panel has sliders for its radius, the stiffness of the radius
-  // and its spring. Each slider is moved to the right.
+  // and its spring. Each slider is moved to the right. The places are those of a photograph of the window.
   set_bytes(folder / "mouse.sh", viewer("scene.json --script script.txt --out played.json") + R"( &
 program=$!
 for i in $(seq 100); do
@@ -176,25 +176,26 @@ move 83 270 120
 wait $program
 )");
   set_bytes(folder / "script.txt",
-            "key space\nuntil 10\nkey space\npictures 5\nphotograph window.png\nkey w\n");
+            "key space\nuntil 20\nkey space\npictures 5\nphotograph window.png\nkey w\n");
   on_display(folder, "sh mouse.sh");
   Diagnostics diagnostics;
   const std::unique_ptr<Scene> scene = read_scene((folder / "played.json").string(), {}, diagnostics);
   REQUIRE(scene != nullptr);
   CHECK(scene->body.gravity_at(0) == Vec3<double>::Zero());
-  CHECK(scene->body.gravity_at(9).x() > 5);
+  const double end = 20;  // s
+  CHECK(scene->body.gravity_at(end).x() > 5);
   const TimeFunction& radius = scene->body.parts()[0]->parameters().moving(0).rest;
   CHECK(radius.value(0) == 0.4);
-  CHECK(radius.value(9) > 0.45);
+  CHECK(radius.value(end) > 0.45);
   REQUIRE(scene->body.drives().size() == 1);
   const Drive& servo = *scene->body.drives().front();
   CHECK(servo.name == "ball.r");
   CHECK(servo.stiffness.of_time().value(0) == 0);
-  CHECK(servo.stiffness.of_time().value(9) > 4000);
+  CHECK(servo.stiffness.of_time().value(end) > 4000);
   const Spring& spring = *scene->body.springs().front();
   REQUIRE(spring.name == "band");
   CHECK(spring.stiffness.of_time().value(0) == 5);
-  CHECK(spring.stiffness.of_time().value(9) > 10);
+  CHECK(spring.stiffness.of_time().value(end) > 10);
 }
 
 TEST_CASE("a build without a window names the packages to install") {

@@ -44,6 +44,12 @@ PLIANT_INLINE void MultiBody::remove(const Spring& spring) {
                  springs_.end());
 }
 
+PLIANT_INLINE void MultiBody::remove(const Drive& drive) {
+  drives_.erase(std::remove_if(drives_.begin(), drives_.end(),
+                               [&](const std::unique_ptr<Drive>& each) { return each.get() == &drive; }),
+                drives_.end());
+}
+
 PLIANT_INLINE PointForce& MultiBody::force(std::string name, Point at, StateVector force, Frame frame) {
   forces_.push_back(std::make_unique<PointForce>(
       PointForce{std::move(name), std::move(at), std::move(force), frame, nullptr}));

@@ -110,6 +110,7 @@ class MultiBody {
                  StateFunction rest_length = 0);
   /// Removes a spring of this MultiBody. No Model that was made after the spring may exist.
   void remove(const Spring& spring);
+  void remove(const Drive& drive);
   /// Adds a force (N) at a material point. frame: the frame of its components.
   PointForce& force(std::string name, Point at, StateVector force, Frame frame = Frame::world);
   /// Adds a force at a material point by a function, see PointForce::custom.

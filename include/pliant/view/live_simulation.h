@@ -58,7 +58,8 @@ struct SpringStiffness {
 struct ParameterStiffness {
   std::size_t rest;                   ///< number of the parameter in LiveSimulation::rest_values()
   double first;                       ///< value in the scene, N/m or N m: the diagonal entry of K_s
-  std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far; nullptr without a servo
+  Drive* servo;                       ///< nullptr if the user has not raised the stiffness
+  std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far
   double next;                        ///< value at the end of the next interval, that of the servo included
 };
 
@@ -115,8 +116,9 @@ class LiveSimulation {
   /// std::invalid_argument for a value that is negative or not finite.
   void set_stiffness(std::size_t i, double value);
 
-  /// The stiffnesses of those parameters in rest_values() that have one and no drive in the scene. Their
-  /// order does not change.
+  /// The stiffnesses of those parameters in rest_values() that have one and no drive in the scene.
+  /// Parameters of a part that deforms locally are left out if the method of integration treats its
+  /// elasticity implicitly: servos are explicit. The order does not change.
   const std::vector<ParameterStiffness>& parameter_stiffnesses() const { return parameter_stiffnesses_; }
   /// Changes the stiffness of a parameter linearly within the next interval. i: its number in
   /// parameter_stiffnesses(); value: N/m or N m. The energy of the servo is work of actuation. Throws

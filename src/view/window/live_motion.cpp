@@ -266,9 +266,9 @@ void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
     auto value = static_cast<float>(stiffness.next);
     const auto first = static_cast<float>(stiffness.first);
     if (!add_slider("stiffness of " + rest.parameter, value, first, 100 * first, "%.4g",
-                    ImGuiSliderFlags_Logarithmic))
+                    ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat))
       continue;
-    stiffness.next = std::max<double>(value, stiffness.first);
+    stiffness.next = value <= first ? stiffness.first : value;  // first may be rounded
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_parameter_stiffness(i, wanted);
     });

@@ -24,14 +24,15 @@ struct Drive {
   StateFunction force;                                         ///< N or N m
   double max_force = std::numeric_limits<double>::infinity();  ///< N or N m
 
-  /// Whether the force may be other than zero at time t, s: stiffness, damping and force are not all
-  /// functions of time with the value 0 there.
-  bool may_act(double t) const {
+  /// Returns whether the force can differ from 0 at time t, s. It is 0 if stiffness, damping and force are
+  /// functions of time with the value 0 at t.
+  bool may_exert_force(double t) const {
     const auto is_zero = [t](const StateFunction& x) {
       return !x.reads_state() && x.of_time().value(t) == 0;
     };
     return !(is_zero(stiffness) && is_zero(damping) && is_zero(force));
   }
+
   /// Whether the drive is a spring and damper with constants. Its energy k (x - target)^2 / 2 is then in the
   /// ledger; otherwise the ledger has the work of F as actuation.
   bool is_passive() const {

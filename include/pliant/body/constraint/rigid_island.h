@@ -75,8 +75,8 @@ class RigidIsland {
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
-  /// Returns the sum over the parts of mass times position of the centre of mass, kg m, world. q: of the last
-  /// evaluation.
+  /// Returns the sum over the parts of mass times position of the centre of mass, kg m, world. q and
+  /// now: of the last call of accelerate().
   Vec3<double> mass_moment(const VecX<double>& q, const RigidWorkspace& now) const;
 
   /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and |C_dot| <=
