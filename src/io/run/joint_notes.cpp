@@ -126,7 +126,8 @@ std::vector<std::string> redundancy_notes(const Simulation& simulation) {
   std::vector<std::string> notes;
   for (const std::string& text :
        {follow.text("redundant constraints, implied by those of other joints"),
-        disagree.text("constraints that contradict those of other joints, and may never close"),
+        disagree.text("constraints that at the present positions contradict those of other joints, and may "
+                      "never close"),
         directionless.text("constraints without direction at the present positions")})
     if (!text.empty()) notes.push_back(text);
   return notes;
