@@ -50,6 +50,20 @@ std::string viewer(const std::string& arguments) {
   return "'" + std::string(PLIANT_PROGRAM) + "' view " + arguments;
 }
 
+/// Returns a shell script that shows scene.json with script.txt, moves the mouse of the display by some
+/// commands, and waits for the end. The commands find the window in $window.
+std::string with_mouse(const std::string& commands) {
+  return viewer("scene.json --script script.txt --out played.json") + R"( &
+program=$!
+for i in $(seq 100); do
+  window=$(xdotool search --name 'pliant: scene' 2>/dev/null | head -n 1) && [ -n "$window" ] && break
+  sleep 0.1
+done
+sleep 2
+)" + commands +
+         "\nwait $program\n";
+}
+
 bool no_display() {
   if (std::string(PLIANT_VIRTUAL_DISPLAY).empty() || !missing_window_packages().empty()) {
     WARN("skipped: this build has no window, or xvfb-run or xdotool is missing");
@@ -123,20 +137,13 @@ TEST_CASE("the mouse of the display drags a part, and the wheel and the right bu
   const NewFolder folder;
   set_bytes(folder / "scene.json", kScene);
   // The ball is at about (380, 270) in a window of 960 x 540, which the display places at its corner.
-  set_bytes(folder / "mouse.sh", viewer("scene.json --script script.txt --out played.json") + R"( &
-program=$!
-for i in $(seq 100); do
-  window=$(xdotool search --name 'pliant: scene' 2>/dev/null | head -n 1) && [ -n "$window" ] && break
-  sleep 0.1
-done
-sleep 2
+  set_bytes(folder / "mouse.sh", with_mouse(R"(
 xdotool mousemove --window "$window" 375 270
 sleep 0.3
 xdotool mousedown 1
 sleep 0.3
 for i in 1 2 3 4 5 6 7 8 9 10; do xdotool mousemove --window "$window" $((375 + 10 * i)) $((270 - 8 * i)); sleep 0.05; done
-wait $program
-)");
+)"));
   set_bytes(folder / "script.txt", "key space\nuntil 6\nkey space\npictures 5\nreport\nkey w\n");
   const std::string printed = on_display(folder, "sh mouse.sh");
   const Report report = last_report(printed);
@@ -155,13 +162,7 @@ TEST_CASE("sliders of the panel change gravity, a rest value and stiffnesses, an
   set_bytes(folder / "scene.json", kSpringScene);
   // A click on the ball selects it. Then the panel has sliders for its radius, the stiffness of the radius
   // and its spring. Each slider is moved to the right. The places are those of a photograph of the window.
-  set_bytes(folder / "mouse.sh", viewer("scene.json --script script.txt --out played.json") + R"( &
-program=$!
-for i in $(seq 100); do
-  window=$(xdotool search --name 'pliant: scene' 2>/dev/null | head -n 1) && [ -n "$window" ] && break
-  sleep 0.1
-done
-sleep 2
+  set_bytes(folder / "mouse.sh", with_mouse(R"(
 move() {  # X Y X_END: the mouse moves with its button held
   xdotool mousemove --window "$window" "$1" "$2"; sleep 0.3
   xdotool mousedown 1; sleep 0.3
@@ -173,8 +174,7 @@ move 38 150 50
 move 75 190 110
 move 25 230 90
 move 83 270 120
-wait $program
-)");
+)"));
   set_bytes(folder / "script.txt",
             "key space\nuntil 20\nkey space\npictures 5\nphotograph window.png\nkey w\n");
   on_display(folder, "sh mouse.sh");
