@@ -48,16 +48,20 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   A.topRows(n_r) = w.a_response;
   A.bottomRows(n_p) = -G0 * w.kappa_response - G * w.a_response;
   // Add the compliance 1/m of each node that two points share, times both weights.
-  for (std::size_t a = 0; a < points.size(); ++a)
-    for (std::size_t b = 0; b < points.size(); ++b)
+  VecX<double> weight_in_b = VecX<double>::Zero(n);
+  for (std::size_t b = 0; b < points.size(); ++b) {
+    for (std::size_t j = 0; j < points[b].node.size(); ++j)
+      weight_in_b[points[b].node[j]] += points[b].weight[j];
+    for (std::size_t a = 0; a < points.size(); ++a) {
+      double share = 0;
       for (std::size_t i = 0; i < points[a].node.size(); ++i)
-        for (std::size_t j = 0; j < points[b].node.size(); ++j) {
-          if (points[a].node[i] != points[b].node[j]) continue;
-          const double share = points[a].weight[i] * points[b].weight[j] * mobility_[points[a].node[i]];
-          for (int r = 0; r < 3; ++r)
-            A(n_r + 3 * static_cast<Eigen::Index>(a) + r, n_r + 3 * static_cast<Eigen::Index>(b) + r) +=
-                share;
-        }
+        share += points[a].weight[i] * weight_in_b[points[a].node[i]] * mobility_[points[a].node[i]];
+      A.block<3, 3>(n_r + 3 * static_cast<Eigen::Index>(a), n_r + 3 * static_cast<Eigen::Index>(b))
+          .diagonal()
+          .array() += share;
+    }
+    for (const int node : points[b].node) weight_in_b[node] = 0;
+  }
   return 0.5 * (A + A.transpose());
 }
 
