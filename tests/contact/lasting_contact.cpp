@@ -325,4 +325,40 @@ TEST_CASE("a thin part that slides fast on a floor needs no divided steps", "[co
   CHECK(simulation.state().q[0] == Approx(2).epsilon(1e-12));
 }
 
+TEST_CASE("a ball that leaves the floor lands again in the same step, at the exact time", "[contact]") {
+  for (const char* method : {"rk4", "dop853"}) {
+    MultiBody body;
+    body.contact.active = true;
+    body.contact.restitution = 1;
+    body.contact.planes.emplace_back().name = "floor";
+    body.add<Primitive<Sphere>>("ball")
+        .rest({{"r", 0.1}})
+        .place({0, 0, 0.1})
+        .velocity({0, 0, 0.03}, {0, 0, 0});
+    Simulation simulation(body, method);
+    simulation.step(0.01);
+    // Between its impacts the ball flies for 2 u / g = 6.1 ms.
+    const double since = 0.01 - 2 * 0.03 / kGravity;
+    CAPTURE(method);
+    CHECK(simulation.step_counters().impacts == 1);
+    CHECK(simulation.state().q[2] - 0.1 ==
+          Approx(0.03 * since - 0.5 * kGravity * since * since).epsilon(1e-9));
+    CHECK(simulation.state().v[2] == Approx(0.03 - kGravity * since).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a part that a force presses on a floor without gravity needs no repeated steps", "[contact]") {
+  MultiBody body;
+  body.gravity = Vec3<double>::Zero();
+  body.contact.active = true;
+  body.contact.planes.emplace_back().name = "floor";
+  Part& log = body.add<Primitive<Ellipsoid>>("log").rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}});
+  log.place({0, 0, 0.12}, Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 2, Vec3<double>::UnitX())));
+  body.force("push", point(log, 0, 0), TimeVector(0, 0, -50));
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 200; ++i) simulation.step(2.5e-3);
+  CHECK(simulation.state().q[2] == Approx(0.1).epsilon(1e-9));
+  CHECK(simulation.step_counters().evaluations < 15 * 200);
+}
+
 }  // namespace lasting_contact_test

@@ -25,8 +25,8 @@ inline constexpr int kMaxTrials = 60;
 /// The sides of an impact are apart at the start of the motion if their gap is larger than this, in sizes of
 /// the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
-/// Sides whose gap is not positive at the start, and at none of the times h 2^-k for k from 1 to
-/// kMaxHalvings, touch all the time. h is the length of the motion.
+/// Sides whose gap is not positive at the start touch all the time if neither the dense output nor steps show
+/// a gap at one of the times h 2^-k for k from 1 to kMaxHalvings. h is the length of the motion.
 inline constexpr int kMaxHalvings = 20;
 /// Accuracy of the time on the dense output, as a share of the motion.
 inline constexpr double kPathTolerance = 1e-9;
@@ -139,14 +139,27 @@ class ImpactGap {
   double size_ = std::numeric_limits<double>::infinity(), largest_ = 0;
 };
 
+/// Returns whether sides that touch at the start of a motion are apart on the dense output at one of the
+/// times h 2^-k for k from 1 to `halvings`.
+template <class Gap>
+bool separates_on_path(Gap&& gap_on_path, double h, int halvings) {
+  for (int k = 1; k <= halvings; ++k)
+    if (gap_on_path(std::ldexp(h, -k)) > 0) return true;
+  return false;
+}
+
 /// Returns a bracket of the first impact. Its lower gap f_low is not positive if the sides touch all the
-/// time.
-inline Bracket bracket_impact(ImpactGap& gap, double gap_at_start, double h) {
+/// time. gap_on_path: function that returns the gap (m) on the dense output at a time into the motion (s).
+template <class Gap>
+Bracket bracket_impact(ImpactGap& gap, Gap&& gap_on_path, double gap_at_start, double h) {
   Bracket bracket{0, gap_at_start, h, gap.at_time(h)};
+  if (gap_at_start > kClearGap * gap.size()) return bracket;
   // Sides that touch at the start may separate and meet again. Halvings of the interval find a time at which
-  // they are apart.
-  if (!(gap_at_start > kClearGap * gap.size())) bracket.f_low = 0;
-  for (int i = 0; i < (gap_at_start > 0 ? kMaxTrials : kMaxHalvings) && !(bracket.f_low > 0); ++i) {
+  // they are apart: first on the dense output, which needs no evaluations, then by steps of the method.
+  bracket.f_low = 0;
+  const int halvings = gap_at_start > 0 ? kMaxTrials : kMaxHalvings;
+  if (!separates_on_path(gap_on_path, h, halvings)) return bracket;
+  for (int k = 1; k <= halvings && !(bracket.f_low > 0); ++k) {
     const double tau = 0.5 * bracket.high, f = gap.at_time(tau);
     if (f > 0) {
       bracket.low = tau;
@@ -198,15 +211,17 @@ PLIANT_INLINE std::optional<double> locate_impact(StepContext& step, const Conta
   const double t = motion.begin, h = motion.h;
   const StepPath path = method.path(step.dynamics, before, h, step.state, step.counters);
   impact_timing::ImpactGap gap(step, finder, method, motion, impacts);
-  const impact_timing::Bracket bracket = impact_timing::bracket_impact(gap, gap.at_state(before, t), h);
+  auto gap_on_path = [&, there = before](double tau) mutable {
+    path.at(tau / h, there.q);
+    return gap.at_state(there, t + tau);
+  };
+  const impact_timing::Bracket bracket =
+      impact_timing::bracket_impact(gap, gap_on_path, gap.at_state(before, t), h);
   if (!(bracket.f_low > 0)) {
     gap.move_to(h);
     return std::nullopt;
   }
-  const auto approximate = impact_timing::locate_on_path(bracket, h, [&, there = before](double tau) mutable {
-    path.at(tau / h, there.q);
-    return gap.at_state(there, t + tau);
-  });
+  const auto approximate = impact_timing::locate_on_path(bracket, h, gap_on_path);
   return impact_timing::refine_impact(gap, bracket, h, approximate);
 }
 
