@@ -354,14 +354,17 @@ TEST_CASE(
   struct Case {
     const char* shape;
     std::vector<std::string> chain, dynamic;
+    double largest_error = 1e-12;
   };
+  // At corners of the ranges, the bent and twisted cylinder has errors of 1e-12 to 4e-12: thinning leaves
+  // them (Thinning in rule_search.h).
   const Case cases[] = {
       {"superellipsoid", {}, {"eps2"}},
       {"superellipsoid", {}, {"eps1", "eps2"}},
       {"superellipsoid", {"taper"}, {"a1", "eps2", "taper.tx"}},
       {"superellipsoid", {"taper"}, {"a1", "a2", "a3", "eps1", "eps2", "taper.tx", "taper.ty"}},
       {"supertoroid", {}, {"eps1", "eps2"}},
-      {"cylinder", {"bend", "twist"}, {"a1", "bend.angle", "twist.angle"}},
+      {"cylinder", {"bend", "twist"}, {"a1", "bend.angle", "twist.angle"}, 1e-11},
       {"ellipsoid", {"taper", "taper"}, {"a1", "taper.tx", "taper2.tx"}},
   };
   for (const Case& c : cases)
@@ -377,7 +380,7 @@ TEST_CASE(
            << " " << part->parameters().n_dynamic() << (shell ? " shell " : " solid ")
            << part->mass_points().rule << " " << part->mass_points().n_points);
       CHECK(part->mass_points().relative_error == 0);
-      CHECK(test::doubling_error(*part, 6) <= 1e-12);
+      CHECK(test::doubling_error(*part, 6) <= c.largest_error);
     }
 }
 
