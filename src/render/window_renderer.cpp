@@ -10,11 +10,14 @@
 namespace pliant {
 namespace {
 
+/// Side of the shadow map of drafts with a sample for each pixel, texels.
+constexpr int kDraftShadowSide = 1024;
+
 PassSizes sizes_of(int width, int height, WindowRenderer::Quality quality) {
   PassSizes sizes = pass_sizes(width, height);
   sizes.samples = WindowRenderer::samples(quality);
   if (quality != WindowRenderer::Quality::full) {
-    sizes.shadow_side = 1024;
+    sizes.shadow_side = static_cast<int>(kDraftShadowSide * sizes.samples);
     sizes.contact_side = 32;
     sizes.occlusion = false;
   }

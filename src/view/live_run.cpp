@@ -16,8 +16,9 @@ namespace pliant {
 namespace {
 
 constexpr double kSpeedWindow = 0.5, kFirstSpeed = 0.1, kLedgerEvery = 0.1;  // s of wall time
-/// Of a delay of the simulation, at most this much is caught up, s of wall time.
-constexpr double kMaxDelay = 0.25;
+/// Of a delay of the simulation, at most this much is caught up, s of wall time. Impacts in a scene that
+/// hardly reaches real time delay it by half a second.
+constexpr double kMaxDelay = 1;
 
 }  // namespace
 
@@ -28,18 +29,25 @@ class LiveRun::Clock {
   void restart(double time) {
     due_ = measured_ = WallClock::now();
     measured_time_ = time;
-    speed_ = 0;
+    speed_ = delay_ = 0;
   }
   /// Returns the wall time at which the interval after one of `interval` seconds is due.
   WallClock::time_point next_due(double interval, double max_speed) {
     const WallClock::time_point now = WallClock::now();
-    if (!std::isfinite(max_speed)) return due_ = now;
+    if (!std::isfinite(max_speed)) {
+      delay_ = 0;
+      return due_ = now;
+    }
     due_ +=
         std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(interval / max_speed));
     const auto latest =
         std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(kMaxDelay));
-    return due_ = std::max(due_, now - latest);
+    due_ = std::max(due_, now - latest);
+    delay_ = std::max(0.0, std::chrono::duration<double>(now - due_).count());
+    return due_;
   }
+  /// Returns how late the last interval ended, s.
+  double delay() const { return delay_; }
   /// The time that commands took is not caught up. start: when they began.
   void skip_since(WallClock::time_point start) { due_ += WallClock::now() - start; }
   /// Measures the speed at a simulated time, s. Returns 0 until kFirstSpeed seconds have passed.
@@ -60,7 +68,7 @@ class LiveRun::Clock {
 
  private:
   WallClock::time_point due_ = WallClock::now(), measured_ = due_, ledger_ = due_;
-  double measured_time_ = 0, speed_ = 0;
+  double measured_time_ = 0, speed_ = 0, delay_ = 0;
 };
 
 LiveRun::LiveRun(Scene& scene, double display_rate, int threads)
@@ -236,7 +244,10 @@ void LiveRun::publish() {
   next->refusal = refusal_;
   const std::lock_guard lock(mutex_);
   next->running = running_ && failure_.empty();
-  if (next->running) next->speed = clock_->speed(next->state.time());
+  if (next->running) {
+    next->speed = clock_->speed(next->state.time());
+    next->delay = clock_->delay();
+  }
   snapshot_ = next;
 }
 

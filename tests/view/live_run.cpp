@@ -1,6 +1,7 @@
 // A simulation in its own thread: pause, single steps, speed, commands and failures.
 #include <pliant/view/live_run.h>
 
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <thread>
@@ -91,6 +92,35 @@ TEST_CASE("a live run keeps real time, or is as fast as it can") {
   CHECK(now->state.time() > 0.2 * wall);
   run.set_max_speed(std::numeric_limits<double>::infinity());
   wait_until(run, [](const Snapshot& later) { return later.state.time() > 10; });
+}
+
+TEST_CASE("a live run that is late says by how much, and catches up at most a second") {
+  const std::unique_ptr<Scene> scene = ball_scene();
+  std::atomic<bool> slow = true;
+  scene->body.force("slow", point(*scene->body.find("ball"), 0, 0),
+                    [&](double, const Vec3<double>&, const Vec3<double>&) {
+                      if (slow) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                      return Vec3<double>::Zero().eval();
+                    });
+  LiveRun run(*scene);
+  CHECK(run.snapshot()->delay == 0);
+  run.play();
+  wait_until(run, [](const Snapshot& now) { return now.delay > 0.5; });
+  run.pause();
+  CHECK(wait_until(run, [](const Snapshot& now) { return !now.running; })->delay == 0);
+  run.play();
+  wait_until(run, [](const Snapshot& now) { return now.delay > 0.99; });
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  CHECK(run.snapshot()->delay <= 1.01);
+  slow = false;
+  const double before = run.snapshot()->state.time();
+  const auto start = std::chrono::steady_clock::now();
+  const double after =
+      wait_until(run, [](const Snapshot& now) { return now.running && now.delay < 0.01; })->state.time();
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  CHECK(after - before > wall + 0.8);
+  run.set_max_speed(std::numeric_limits<double>::infinity());
+  wait_until(run, [](const Snapshot& now) { return now.running && now.delay == 0; });
 }
 
 TEST_CASE("a live run does not catch up the time of a slow command") {

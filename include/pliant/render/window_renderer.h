@@ -13,7 +13,8 @@ namespace pliant {
 /// The context of the window must be current on the calling thread during all calls.
 class WindowRenderer {
  public:
-  /// Drafts are for pictures that change: they have a coarse shadow map and no occlusion of the sky.
+  /// Drafts are for pictures that change: they have a coarse shadow map, coarser with fewer samples, and no
+  /// occlusion of the sky.
   enum class Quality {
     half_draft,        ///< a sample for 2 x 2 pixels
     two_thirds_draft,  ///< 2 x 2 samples for 3 x 3 pixels

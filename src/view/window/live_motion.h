@@ -18,6 +18,7 @@ class LiveMotion final : public Motion {
   bool refresh() override;
   StatePicture& shown() override { return shown_; }
   double time() const override { return snapshot_->state.time(); }
+  double delay() const override { return snapshot_->delay; }
   bool plays() const override { return plays_; }
   void play(bool on) override;
   void step() override;

@@ -16,6 +16,7 @@ class RecordedMotion final : public Motion {
   bool refresh() override;
   StatePicture& shown() override { return film_->shown(); }
   double time() const override { return time_; }
+  double delay() const override { return 0; }
   bool plays() const override { return plays_; }
   void play(bool on) override;
   void step() override;

@@ -46,6 +46,7 @@ class Viewer {
   int width() const { return width_; }
   int height() const { return height_; }
   Motion& motion() { return motion_; }
+  const Motion& motion() const { return motion_; }
 
  private:
   enum class Action { none, orbit, pan, drag };

@@ -21,7 +21,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kIdle = 0.1;  // s of wall time
+// Times between pictures, s of wall time: of a motion, of a simulation that is later than kLate, and of a
+// still picture.
+constexpr double kFrame = 1.0 / 60, kLateFrame = 1.0 / 25, kIdle = 0.1;
+constexpr double kLate = 0.02;
 
 [[noreturn]] void fail(const std::string& what) {
   const char* reason = nullptr;
@@ -136,13 +139,17 @@ class Panel {
   }
 };
 
-/// Waits for inputs: until the time of the next picture, or longer if nothing changes.
-void wait_for_inputs(const Viewer& viewer, WallClock::time_point started) {
-  const double left = (viewer.is_idle() ? kIdle : kFrame) - seconds_since(started);
-  if (left > 0)
+/// Handles inputs until the time of the next picture. If nothing changes, returns after the first input.
+void handle_inputs(const Viewer& viewer, WallClock::time_point started) {
+  const bool is_idle = viewer.is_idle();
+  const double motion_frame = viewer.motion().delay() > kLate ? kLateFrame : kFrame;
+  const double frame = is_idle ? kIdle : motion_frame;
+  double left = frame - seconds_since(started);
+  if (left <= 0) return glfwPollEvents();
+  do {
     glfwWaitEventsTimeout(left);
-  else
-    glfwPollEvents();
+    left = frame - seconds_since(started);
+  } while (!is_idle && left > 0);
 }
 
 /// Draws pictures until the window is closed, the script has ended or the time of the bench is over.
@@ -164,7 +171,7 @@ void draw_pictures(GLFWwindow* window, Viewer& viewer, const ViewOptions& option
       ++pictures;
       viewer.add_picture_time(seconds_since(started));
     }
-    wait_for_inputs(viewer, started);
+    handle_inputs(viewer, started);
   }
   if (!(options.bench > 0)) return;
   const double wall = seconds_since(start);
