@@ -1,22 +1,23 @@
 # Functions for apps/quickstart.sh, tests/run.sh and .ci/run: the lists of Debian packages, their installation, and the
 # build with a preset of CMake. Source this file from POSIX sh in the folder of the project.
-# shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
+# shellcheck shell=sh disable=SC2034,SC2046,SC2086  # lists are words to split
 
 # Durations on 2 cores in a new folder, in minutes. README.md states the first number. README.md and tests/README.md state
 # the sum of the other two.
 pliant_minutes_program=7
-pliant_minutes_everything=16
-pliant_minutes_tests=18
+pliant_minutes_everything=15
+pliant_minutes_tests=20
 
 # Each word of these lists is a package or a choice. The choice a|b,c means package a, or both b and c if the distribution
 # has no package a.
-pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
+pliant_packages="cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev zlib1g-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
 # The window of `pliant view` needs these packages; without them the program is built without a window.
 pliant_window_packages="libglfw3-dev libimgui-dev"
-# Tests also need both libraries that draw without a screen, an independent validator of the scenes' schema, Python for
-# the tests package/scene_keys and package/house, and a virtual display with synthetic inputs for tests of the window.
-pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xauth xdotool"
+# Tests also need GCC for the clients of the library, both libraries that draw without a screen, an independent validator of
+# the scenes' schema, Python for the tests package/scene_keys and package/house, and a virtual display with synthetic inputs
+# for tests of the window.
+pliant_test_packages="g++ catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xauth xdotool"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 
@@ -68,28 +69,39 @@ pliant_missing() {
   done
 }
 
-# pliant_install WORD...: installs, as root or through sudo, the missing packages of pliant_packages and of the words. If
-# the installation is impossible, prints the names of the missing packages and ends the script with status 4. On systems
-# without dpkg-query or apt-get, only prints the names of all packages.
+# pliant_can_install: returns status 0 as root, or if sudo may be used.
+pliant_can_install() {
+  [ "$(id -u)" -eq 0 ] || { command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; }
+}
+
+# pliant_compiler: prints the package of the compiler, as a word of a list. CXX names an installed compiler. Without root
+# and sudo, an installed g++ is good enough.
+pliant_compiler() {
+  if [ -n "${CXX:-}" ]; then return; fi
+  if pliant_can_install; then echo clang; else echo "clang|g++"; fi
+}
+
+# pliant_install WORD...: installs, as root or through sudo, the missing packages of the compiler, of pliant_packages and of
+# the words. If the installation is impossible, prints the names of the missing packages and ends the script with status 4.
+# On systems without dpkg-query or apt-get, only prints the names of all packages.
 pliant_install() {
+  set -- $(pliant_compiler) $pliant_packages "$@"
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" $pliant_packages "$@"
+    pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" "$@"
     return 0
   fi
-  missing=$(pliant_missing $pliant_packages "$@")
+  missing=$(pliant_missing "$@")
   [ -n "$missing" ] || return 0
-  as_root=
-  if [ "$(id -u)" -ne 0 ]; then
-    if ! command -v sudo >/dev/null || { [ ! -t 0 ] && ! sudo -n true 2>/dev/null; }; then
-      pliant_say "packages are missing, and their installation needs root or sudo: apt-get install $missing" >&2
-      exit 4
-    fi
-    as_root=sudo
+  if ! pliant_can_install; then
+    pliant_say "packages are missing, and their installation needs root or sudo: apt-get install $missing" >&2
+    exit 4
   fi
+  as_root=
+  if [ "$(id -u)" -ne 0 ]; then as_root=sudo; fi
   apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600"
   pliant_begin "packages" "installing $missing; the time depends on the network"
   $apt update || pliant_say "the package lists could not be updated; continuing with the old ones"
-  missing=$(pliant_missing $pliant_packages "$@")  # again, with the updated lists
+  missing=$(pliant_missing "$@")  # again, with the updated lists
   if ! $apt install -y --no-install-recommends $missing; then
     pliant_say "these packages could not be installed: $missing" >&2
     exit 4
@@ -107,13 +119,18 @@ pliant_jobs() {
   echo "$jobs"
 }
 
-# pliant_configure PRESET [option...]: configures build/PRESET. A new folder uses Ninja and ccache if they are installed.
+# pliant_configure PRESET [option...]: configures build/PRESET. A new folder uses the compiler CXX if this variable is set,
+# or else Clang if it is installed: it needs two thirds of the time of GCC. Ninja and ccache are used if they are installed.
+# ccache does not store objects that use precompiled headers, so with ccache there are none.
 pliant_configure() {
   preset=$1
   shift
   if [ ! -f "build/$preset/CMakeCache.txt" ]; then
+    if [ -z "${CXX:-}" ] && command -v clang++ >/dev/null; then set -- -DCMAKE_CXX_COMPILER=clang++ "$@"; fi
     if command -v ninja >/dev/null; then set -- -G Ninja "$@"; fi
-    if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
+    if command -v ccache >/dev/null; then
+      set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "$@"
+    fi
   fi
   cmake --preset "$preset" "$@"
 }
