@@ -85,7 +85,7 @@ double separation(const Pair& pair, const Eigen::Quaterniond& R_a, const Eigen::
 
 }  // namespace
 
-TEST_CASE("the gap of convex parts is the largest separation over all normals", "[contact]") {
+TEST_CASE("the gap of convex parts is the largest separation over all normals", "[contact][long]") {
   Draws draws(7);
   for (const Kind& kind_a : kinds())
     for (const Kind& kind_b : kinds()) {

@@ -101,7 +101,7 @@ Part& add(MultiBody& body, const Kind& kind, bool dynamic) {
 }  // namespace
 
 TEST_CASE("the lowest contact point of a curved solid over a plane is the lowest point of its surface",
-          "[contact]") {
+          "[contact][long]") {
   Draws draws(3);
   for (const Kind& kind : kinds()) {
     MultiBody only;
@@ -213,7 +213,7 @@ double support(const Part& part, const Vec3<double>& m) {
 }  // namespace
 
 TEST_CASE("the gap of convex pairs of tapered and bent solids is the largest separation over all normals",
-          "[contact]") {
+          "[contact][long]") {
   const Part::Named axes{{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}};
   auto with = [](Part::Named rest, const char* name, double value) {
     rest.emplace_back(name, value);

@@ -110,7 +110,7 @@ double least_gap(const std::vector<Contact>& found) {
 }  // namespace
 
 TEST_CASE("the least gap of two solids that are not convex is the least distance of their surfaces",
-          "[contact]") {
+          "[contact][long]") {
   constexpr double kApart = 0.01;
   Draws draws(5);
   for (const Kind& a : kinds())
@@ -244,7 +244,7 @@ TEST_CASE("solids that are not convex lie on each other on several points around
   }
 }
 
-TEST_CASE("edges of separate solids that pass each other do not touch", "[contact]") {
+TEST_CASE("edges of separate solids that pass each other do not touch", "[contact][long]") {
   // Two wedges lean away from each other. The common normal of their edges has a negative gap.
   const Kind wedge{"wedge",
                    "box",
@@ -261,7 +261,7 @@ TEST_CASE("edges of separate solids that pass each other do not touch", "[contac
   CHECK(apart > 10);
 }
 
-TEST_CASE("contacts of pointed superquadrics are found where their surfaces overlap", "[contact]") {
+TEST_CASE("contacts of pointed superquadrics are found where their surfaces overlap", "[contact][long]") {
   // Up to an exponent of 1.4 common normals find them, above it the search on both surfaces.
   Draws draws(11);
   for (const double exponent : {0.65, 1.3, 1.5, 1.8}) {
@@ -281,7 +281,7 @@ TEST_CASE("contacts of pointed superquadrics are found where their surfaces over
   }
 }
 
-TEST_CASE("solids with a full taper touch another part", "[contact]") {
+TEST_CASE("solids with a full taper touch another part", "[contact][long]") {
   const Part::Named taper{{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}, {"taper.tx", -1}, {"taper.ty", -1}};
   const Kind pyramid{"pyramid", "box", {"taper"}, taper}, drop{"drop", "ellipsoid", {"taper"}, taper};
   for (const Kind* kind : {&pyramid, &drop})

@@ -273,7 +273,7 @@ void random_pair(MultiBody& body, int kind, int other, double mu, Draws& draws) 
 
 }  // namespace
 
-TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact]") {
+TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact][long]") {
   Worst linear, angular;
   int seed = 0;
   for (int kind = 0; kind < 7; ++kind)

@@ -267,7 +267,7 @@ void cushion(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
-TEST_CASE("the contact cache works for a part on a soft one with an implicit method", "[contact]") {
+TEST_CASE("the contact cache works for a part on a soft one with an implicit method", "[contact][long]") {
   MultiBody body;
   cushion(body);
   Simulation warm(body, "linearly_implicit"), cold(body, "linearly_implicit");

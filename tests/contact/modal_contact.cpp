@@ -131,7 +131,7 @@ TEST_CASE("an elastic ball dropped on a plane comes to rest, and the plane carri
 }
 
 TEST_CASE("elastic balls that collide, or hit a rigid box, conserve momentum and lose energy",
-          "[contact][modal]") {
+          "[contact][modal][long]") {
   for (const bool box : {false, true}) {
     CAPTURE(box);
     MultiBody body;

@@ -25,7 +25,8 @@ bool has(const std::string& text, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume does not pass it on") {
+TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume does not pass it on",
+          "[long]") {
   const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");

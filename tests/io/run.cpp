@@ -69,7 +69,7 @@ std::unique_ptr<Scene> scene_for(const std::string& integrator) {
 
 }  // namespace
 
-TEST_CASE("N66: any number of threads gives identical files") {
+TEST_CASE("N66: any number of threads gives identical files", "[long]") {
   const NewFolder folder;
   for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     std::string first;
@@ -325,7 +325,8 @@ TEST_CASE("a resumed run keeps the largest errors of contact, and bodies at rest
   CHECK(unbroken.at("notes").dump().find("warning") == std::string::npos);
 }
 
-TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, gives identical files") {
+TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, gives identical files",
+          "[long]") {
   auto scene_of = [] {
     auto scene = pulled_scene();
     scene->body.contact.active = true;

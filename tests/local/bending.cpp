@@ -202,7 +202,8 @@ TEST_CASE("bending: a fold that passes half a turn keeps its energy, force and s
   CHECK((after - before).norm() <= 1e-6 * before.norm());
 }
 
-TEST_CASE("bending: a triangle that swings about its edge beyond half a turn keeps its energy", "[local]") {
+TEST_CASE("bending: a triangle that swings about its edge beyond half a turn keeps its energy",
+          "[local][long]") {
   // Two triangles, elastic in their planes, with a soft hinge. The angular velocity of one of them about the
   // common edge is large enough for more than half a turn against the moment of the hinge.
   Nodes X(4, 3);

@@ -340,7 +340,7 @@ TEST_CASE("steps of 100 times the explicit limit are stable for a thousand steps
 
 TEST_CASE(
     "damping by beta of a stretched rubber block only takes energy, in steps far above the explicit limit",
-    "[implicit][stable]") {
+    "[implicit][stable][long]") {
   // The block hangs at its top, and its weight stretches it by a tenth. There V of the viscous forces differs
   // from K, and the elastic forces turn the frame.
   for (const double beta : {0.003, 0.01, 0.1}) {
@@ -457,7 +457,7 @@ TEST_CASE("a stiff part on joints approaches the rigid motion as its stiffness g
 
 TEST_CASE(
     "the stiffness is factored once, again after a change of the step length, and in each step if it changes",
-    "[implicit]") {
+    "[implicit][long]") {
   MultiBody body;
   flying(solid("elastic", 1000))(body);
   Simulation simulation(body, kMethod);

@@ -205,7 +205,7 @@ TEST_CASE("laws of shells are refused for solids, and laws of solids for shells"
   CHECK_THROWS_WITH(local_law("jelly", {}), test::has_text("there are: membrane"));
 }
 
-TEST_CASE("N20: the largest stable step includes the beta damping of every law", "[local][stable]") {
+TEST_CASE("N20: the largest stable step includes the beta damping of every law", "[local][stable][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody body;

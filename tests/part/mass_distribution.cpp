@@ -88,7 +88,7 @@ TEST_CASE("a given mass is the mass of the whole distribution", "[mass]") {
   CHECK(part->rest_inertia().moment[0] == Approx(3.0 / 2 / 3).epsilon(1e-13));
 }
 
-TEST_CASE("mass points of a distribution are exact for all values of dynamic parameters", "[mass]") {
+TEST_CASE("mass points of a distribution are exact for all values of dynamic parameters", "[mass][long]") {
   const auto tilted = each([](const auto&, const Vec3<double>& X) {
     return 0.6 + std::exp(0.8 * X[0] - 0.5 * X[1]) + 0.5 * std::sin(3 * X[2]);
   });
@@ -110,7 +110,7 @@ TEST_CASE("mass points of a distribution are exact for all values of dynamic par
   }
 }
 
-TEST_CASE("the function 1 gives the inertia of equal density", "[mass]") {
+TEST_CASE("the function 1 gives the inertia of equal density", "[mass][long]") {
   auto inertia_of = [](bool distributed) {
     const auto part = make_part("part", "superellipsoid", {"taper", "bend"}, 1000);
     part->rest({{"eps1", 0.4}, {"eps2", 1.4}, {"taper.tx", 0.5}, {"bend.angle", 0.6}});

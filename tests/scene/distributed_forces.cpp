@@ -275,7 +275,7 @@ TEST_CASE("distributed forces without effect and hidden names are reported", "[l
   CHECK(faulty.find("inertia") == std::string::npos);
 }
 
-TEST_CASE("a scene gives a mass distribution by a formula", "[mass]") {
+TEST_CASE("a scene gives a mass distribution by a formula", "[mass][long]") {
   auto scene_with = [](const std::string& formula, std::string& messages) {
     Diagnostics diagnostics;
     std::unique_ptr<Scene> scene;

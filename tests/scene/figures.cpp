@@ -128,7 +128,7 @@ TEST_CASE("forces mould the superspheres of the gallery, and hold their shapes",
   CHECK(balance < 0.01);  // J; the springs and forces do more than 1000 J of work
 }
 
-TEST_CASE("the spring of fig. 1 raises a bulge of the membrane, and the parameters answer") {
+TEST_CASE("the spring of fig. 1 raises a bulge of the membrane, and the parameters answer", "[long]") {
   double bulge = 0, elsewhere = 0, a3 = 0, shear = 0;
   run("pull", 1.8, [&](Simulation& simulation) {
     const PartModel& blob = simulation.model().parts()[0];

@@ -208,7 +208,7 @@ TEST_CASE("a part with prescribed motion is in the cluster of a body that it rea
   }
 }
 
-TEST_CASE("a resumed state continues with the same bits", "[clusters]") {
+TEST_CASE("a resumed state continues with the same bits", "[clusters][long]") {
   for (const Way& way : kWays)
     for (const double stop : {0.11, 0.3}) {  // in flight, and with contacts
       INFO(way.integrator << " " << way.tolerance << " at " << stop);

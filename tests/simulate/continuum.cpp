@@ -113,7 +113,7 @@ TEST_CASE("damping of the material removes energy, which the ledger records, and
   CHECK(drift.angular <= 1e-7);
 }
 
-TEST_CASE("a solid that only spins dissipates nothing, even while it is bent", "[continuum]") {
+TEST_CASE("a solid that only spins dissipates nothing, even while it is bent", "[continuum][long]") {
   // The motion of the frame causes no strain rate.
   MultiBody body;
   Part& part = rubber(body, "neo_hookean", 0.1);

@@ -383,7 +383,7 @@ TEST_CASE("a reset simulation has the first stiffnesses of parameters, and can r
   CHECK(saved_scene(live, ".", ".") == saved_scene(other, ".", "."));
 }
 
-TEST_CASE("a raised stiffness of a sleeping part is repeated to the last bit") {
+TEST_CASE("a raised stiffness of a sleeping part is repeated to the last bit", "[long]") {
   check_replay(R"({"time": {"tolerance": 1e-6},
     "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": {"rest": 0.1, "stiffness": 20000}},
                "position": [0, 0, 0.101], "beta": 0.01, "alpha": 5}],
@@ -394,7 +394,8 @@ TEST_CASE("a raised stiffness of a sleeping part is repeated to the last bit") {
                });
 }
 
-TEST_CASE("parameters with a stiffness matrix can be made stiffer, and are saved with their rest values") {
+TEST_CASE("parameters with a stiffness matrix can be made stiffer, and are saved with their rest values",
+          "[long]") {
   check_replay(R"({"time": {"step": 0.002, "integrator": "rk4"}, "gravity": [0, 0, 0],
     "parts": [{"name": "bar", "shape": "box", "deformations": ["bend", "taper"],
                "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "taper.tx": 0.1, "bend.angle": {"rest": 0, "initial": 0.3}},
