@@ -232,9 +232,9 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     Swept swept{
         part, model_->position(state, part, t), 0, 0, Vec3<double>::Zero(), mesh.reach(*model_, state, part)};
     if (m.q0 >= 0) {
-      auto speed = [&, &mesh = mesh](const State& of, const Vec3<double>& fallen) {
+      auto speed = [&, &surface = mesh](const State& of, const Vec3<double>& fallen) {
         const auto v = of.v.segment(m.v0, m.n_v());
-        return (v.head<3>() - fallen).norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(of);
+        return (v.head<3>() - fallen).norm() + swept.reach * v.segment<3>(3).norm() + surface.speed(of);
       };
       const bool falls = !sleeps(state, part);
       swept.travel = h * speed(state, Vec3<double>::Zero());
