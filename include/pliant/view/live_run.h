@@ -26,8 +26,7 @@ struct Snapshot {
   Ledger ledger;             ///< of a state at most a tenth of a second of wall time older
   double speed = 0;          ///< simulated time / wall time in the last half second; 0 while paused
   double interval_cost = 0;  ///< wall time to compute an interval, s
-  double delay =
-      0;  ///< wall time by which the simulation is late, s; 0 while paused, or without a limit of speed
+  double delay = 0;          ///< wall time by which the simulation is late, s; 0 if paused or unlimited
   bool running = false;
   bool dragging = false;
   Vec3<double> held = Vec3<double>::Zero();         ///< position of the dragged point, m
