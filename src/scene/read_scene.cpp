@@ -279,7 +279,9 @@ class SceneReader {
       const JsonValue* drive = parameter.json().is_object() ? parameter.json().find("drive") : nullptr;
       if (drive == nullptr || parameter.faulty("drive") || part.parameters().dynamic_number(name) < 0)
         continue;
-      read_drive(parameter.object("drive"), states, scene_->body.drive(part.name() + "." + name, part, name));
+      Drive& servo = scene_->body.drive(part.name() + "." + name, part, name);
+      if (read_drive(parameter.object("drive"), states, servo) && !r.given("stiffness_matrix"))
+        check_sum_of_stiffnesses(parameter, servo, faults_);
     }
   }
   TimeReader times() { return {scene_->end, faults_}; }

@@ -116,7 +116,8 @@ void LiveSimulation::find_parameter_stiffnesses() {
     if (part.local() != nullptr && simulation_->integrator().local_is_implicit()) continue;
     const double stiffness = part.K_s()(k, k);
     if (!(stiffness > 0) || std::any_of(drives.begin(), drives.end(), is_driven)) continue;
-    parameter_stiffnesses_.push_back({i, stiffness, nullptr, nullptr, stiffness});
+    const bool alone = (part.K_s().row(k).array() != 0).count() == 1;
+    parameter_stiffnesses_.push_back({i, stiffness, alone ? 0 : stiffness, nullptr, nullptr, stiffness});
   }
 }
 
@@ -124,10 +125,10 @@ void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
   ParameterStiffness& stiffness = parameter_stiffnesses_.at(i);
   const RestValue& rest = rest_values_[stiffness.rest];
   const std::string name = rest.part->name() + "." + rest.parameter;
-  if (!(value >= stiffness.first) || !std::isfinite(value)) {
+  if (!(value >= stiffness.least) || !std::isfinite(value)) {
     std::ostringstream message;
     message << "a stiffness of " << value << " for " << name << "; expected a number of at least "
-            << stiffness.first << ", the stiffness in the scene";
+            << stiffness.least;
     throw std::invalid_argument(message.str());
   }
   stiffness.next = value;

@@ -71,7 +71,7 @@ void set_stiffnesses(Json& document, const LiveSimulation& simulation) {
     if (stiffness.path) document["springs"][stiffness.number]["stiffness"] = key_frames_of(*stiffness.path);
 }
 
-/// Adds the servos that raise stiffnesses of parameters to the parts of the document.
+/// Adds the servos that change stiffnesses of parameters to the parts of the document.
 void set_parameter_stiffnesses(Json& document, const LiveSimulation& simulation) {
   for (const ParameterStiffness& stiffness : simulation.parameter_stiffnesses()) {
     if (stiffness.servo == nullptr || stiffness.added->times().size() == 1) continue;

@@ -172,7 +172,7 @@ move() {  # X Y X_END: the mouse moves with its button held
 move 380 270 380
 move 38 150 50
 move 75 190 110
-move 25 230 90
+move 25 230 110
 move 83 270 120
 )"));
   set_bytes(folder / "script.txt",

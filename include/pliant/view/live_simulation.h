@@ -53,12 +53,14 @@ struct SpringStiffness {
   double next;                       ///< value at the end of the next interval, N/m
 };
 
-/// The stiffness of a parameter of a part, which the user can raise: a servo (body/actuation/drive.h) pulls
-/// the parameter to its rest value, in addition to the stiffness of the scene.
+/// The stiffness of a parameter of a part, which the user can change: a servo (body/actuation/drive.h) pulls
+/// the parameter to its rest value, or pushes the parameter away from it, in addition to the stiffness of the
+/// scene.
 struct ParameterStiffness {
   std::size_t rest;                   ///< number of the parameter in LiveSimulation::rest_values()
   double first;                       ///< value in the scene, N/m or N m: the diagonal entry of K_s
-  Drive* servo;                       ///< nullptr if the user has not raised the stiffness
+  double least;                       ///< 0, or `first` if the row of K_s has other entries that are not zero
+  Drive* servo;                       ///< nullptr if the user has not changed the stiffness
   std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far
   double next;                        ///< value at the end of the next interval, that of the servo included
 };
@@ -122,7 +124,7 @@ class LiveSimulation {
   const std::vector<ParameterStiffness>& parameter_stiffnesses() const { return parameter_stiffnesses_; }
   /// Changes the stiffness of a parameter linearly within the next interval. i: its number in
   /// parameter_stiffnesses(); value: N/m or N m. The energy of the servo is work of actuation. Throws
-  /// std::invalid_argument for a value that is smaller than that of the scene, or not finite.
+  /// std::invalid_argument for a value below ParameterStiffness::least, or not finite.
   void set_parameter_stiffness(std::size_t i, double value);
 
   /// All drags since time 0.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -40,6 +41,15 @@ bool read_drive(const Reader& r, const StateReader& states, Drive& drive) {
   if (!r.given("rate")) return gains && target && !r.faulty("rate");
   drive.target_rate.emplace();
   return read(r, "rate", states, *drive.target_rate) && gains && target;
+}
+
+void check_sum_of_stiffnesses(const Reader& parameter, const Drive& drive, SceneFaults& faults) {
+  const double own = parameter.given("stiffness") ? parameter.number("stiffness") : 0;
+  if (!drive.stiffness.is_constant() || own + drive.stiffness.constant() >= 0) return;
+  std::ostringstream message;
+  message << "the sum with the stiffness of the parameter, " << own << ", is negative; expected at least "
+          << 0 - own;
+  faults.value(parameter.object("drive").at("stiffness"), message.str());
 }
 
 void read_joint_limits(const Reader& r, const Joint& joint, SceneFaults& faults, MultiBody& body) {

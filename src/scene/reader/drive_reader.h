@@ -11,6 +11,10 @@ namespace pliant {
 /// Reads a drive. r: an object of drive_record(). Faults are reported; returns whether there are none.
 bool read_drive(const Reader& r, const StateReader& states, Drive& drive);
 
+/// Reports a constant stiffness of a drive if its sum with the stiffness of the parameter is negative.
+/// parameter: the object with the key "drive".
+void check_sum_of_stiffnesses(const Reader& parameter, const Drive& drive, SceneFaults& faults);
+
 /// Adds the limits of a joint. r: the joint. Faults are reported.
 void read_joint_limits(const Reader& r, const Joint& joint, SceneFaults& faults, MultiBody& body);
 

@@ -7,9 +7,12 @@
 
 namespace pliant {
 
-/// Returns the record of a drive on a coordinate. name: of the record. unit: of the coordinate, "m" or "rad";
-/// force: of the force along it. Both are empty for a parameter, whose unit depends on its name.
+/// Returns the record of a drive on a coordinate of a joint. name: of the record. unit: of the coordinate,
+/// "m" or "rad"; force: of the force along it.
 schema::Record drive_record(std::string name, const std::string& unit, const std::string& force);
+/// Returns the record of a drive on a parameter. Its units are empty: they depend on the name of the
+/// parameter.
+schema::Record parameter_drive_record();
 /// Returns the record of a drive of a ball joint, whose target has three components.
 schema::Record ball_drive_record();
 

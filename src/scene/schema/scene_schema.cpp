@@ -406,7 +406,7 @@ const Type& parameter_type() {
                  optional("initial_rate", number(unbounded(), "m/s, rad/s or 1/s"), "Rate at time 0.", "0"),
                  optional("stiffness", number(at_least(0), "N/m for a length, else N m"),
                           "K of the energy 1/2 K (q - rest)^2.", "0"),
-                 optional("drive", record(drive_record("parameter_drive", "", "")),
+                 optional("drive", record(parameter_drive_record()),
                           "Servo, spring or motor on the parameter, which is then dynamic."),
                  optional("min", number(unbounded(), "m, rad or 1"), "Lower limit of a dynamic parameter."),
                  optional("max", number(unbounded(), "m, rad or 1"),

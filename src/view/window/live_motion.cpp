@@ -257,7 +257,8 @@ void LiveMotion::add_rest_values(const std::string& part) {
   }
 }
 
-/// Adds a slider for the stiffness of each parameter of a part, from 1 to 100 times its first value.
+/// Adds a slider for the stiffness of each parameter of a part, from a hundredth to 100 times its first
+/// value, but not below the smallest value that is allowed.
 void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
   for (std::size_t i = 0; i < parameter_stiffnesses_.size(); ++i) {
     ParameterStiffness& stiffness = parameter_stiffnesses_[i];
@@ -265,10 +266,11 @@ void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
     if (rest.part->name() != part) continue;
     auto value = static_cast<float>(stiffness.next);
     const auto first = static_cast<float>(stiffness.first);
-    if (!add_slider("stiffness of " + rest.parameter, value, first, 100 * first, "%.4g",
+    const float low = std::max(0.01f * first, static_cast<float>(stiffness.least));
+    if (!add_slider("stiffness of " + rest.parameter, value, low, 100 * first, "%.4g",
                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat))
       continue;
-    stiffness.next = value <= first ? stiffness.first : value;  // first may be rounded
+    stiffness.next = std::max<double>(value, stiffness.least);  // the value may be rounded to below it
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_parameter_stiffness(i, wanted);
     });
