@@ -139,12 +139,12 @@ class ImpactGap {
   double size_ = std::numeric_limits<double>::infinity(), largest_ = 0;
 };
 
-/// Returns whether sides that touch at the start of a motion are apart on the dense output at one of the
-/// times h 2^-k for k from 1 to `halvings`.
+/// Returns whether the gap of sides that touch at the start of a motion exceeds clear_gap (m) on the dense
+/// output at one of the times h 2^-k for k from 1 to `halvings`.
 template <class Gap>
-bool separates_on_path(Gap&& gap_on_path, double h, int halvings) {
+bool separates_on_path(Gap&& gap_on_path, double h, int halvings, double clear_gap) {
   for (int k = 1; k <= halvings; ++k)
-    if (gap_on_path(std::ldexp(h, -k)) > 0) return true;
+    if (gap_on_path(std::ldexp(h, -k)) > clear_gap) return true;
   return false;
 }
 
@@ -158,7 +158,7 @@ Bracket bracket_impact(ImpactGap& gap, Gap&& gap_on_path, double gap_at_start, d
   // they are apart: first on the dense output, which needs no evaluations, then by steps of the method.
   bracket.f_low = 0;
   const int halvings = gap_at_start > 0 ? kMaxTrials : kMaxHalvings;
-  if (!separates_on_path(gap_on_path, h, halvings)) return bracket;
+  if (!separates_on_path(gap_on_path, h, halvings, kClearGap * gap.size())) return bracket;
   for (int k = 1; k <= halvings && !(bracket.f_low > 0); ++k) {
     const double tau = 0.5 * bracket.high, f = gap.at_time(tau);
     if (f > 0) {
