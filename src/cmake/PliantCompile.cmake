@@ -56,6 +56,9 @@ function(pliant_precompile target)
     target_precompile_headers(${target} REUSE_FROM ${arg_LIKE})
   else()
     target_precompile_headers(${target} PRIVATE ${arg_HEADERS})
+    # The times of the headers are not stored. Otherwise a new version of a system package, whose headers are older
+    # than the build, would stop the build with an error.
+    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
   endif()
 endfunction()
 
