@@ -109,7 +109,7 @@ void measure_stages(Simulation& simulation, const State& state, Cost& cost) {
   for (int i = 0; i < cost.bodies; ++i) all.push_back(i);
   State after = state;
   after.v += kStep * work.v_dot;
-  simulation.dynamics().evaluate_masses(after.q, after.v, all, work);
+  simulation.dynamics().evaluate_masses(after.time(), after.q, after.v, all, work);
   cost.solve = time_of(cost, [&] {
     ContactProblem problem(simulation.model(), after, work, contacts);
     problem.solve(1);

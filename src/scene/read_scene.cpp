@@ -280,7 +280,8 @@ class SceneReader {
       if (drive == nullptr || parameter.faulty("drive") || part.parameters().dynamic_number(name) < 0)
         continue;
       Drive& servo = scene_->body.drive(part.name() + "." + name, part, name);
-      if (read_drive(parameter.object("drive"), states, servo) && !r.given("stiffness_matrix"))
+      const bool elastic = r.given("stiffness_matrix") || r.given("elasticity") || r.given("material");
+      if (read_drive(parameter.object("drive"), states, servo) && (parameter.given("stiffness") || !elastic))
         check_sum_of_stiffnesses(parameter, servo, faults_);
     }
   }

@@ -95,6 +95,10 @@ void LiveRun::post(Command command) {
   changed_.notify_all();
 }
 
+void LiveRun::post_report(std::function<std::string(LiveSimulation&)> command) {
+  post([this, command = std::move(command)](LiveSimulation& simulation) { report_ = command(simulation); });
+}
+
 void LiveRun::wait_for(Command command) {
   std::packaged_task<void(LiveSimulation&)> task(std::move(command));
   std::future<void> done = task.get_future();
@@ -179,7 +183,8 @@ bool LiveRun::wait_for_work(std::vector<Command>& commands) {
 }
 
 void LiveRun::loop() {
-  for (std::vector<Command> commands; wait_for_work(commands); commands.clear()) {
+  std::vector<Command> commands;
+  for (; wait_for_work(commands); commands.clear()) {
     perform(commands);
     bool advances = false;
     {
@@ -192,6 +197,7 @@ void LiveRun::loop() {
     publish();
     if (advances) keep_pace();
   }
+  perform(commands);
 }
 
 void LiveRun::perform(std::vector<Command>& commands) {
@@ -242,6 +248,7 @@ void LiveRun::publish() {
   }
   next->failure = failure_;
   next->refusal = refusal_;
+  next->report = report_;
   const std::lock_guard lock(mutex_);
   next->running = running_ && failure_.empty();
   if (next->running) {

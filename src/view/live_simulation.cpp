@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/body/placed_point.h>
+#include <pliant/simulate/stable_step.h>
 
 namespace pliant {
 
@@ -51,11 +52,15 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
   }
   scene.body.stop_rate = rate_;
   free_rest_values();
+  free_local_stiffnesses();
   find_stiffnesses();
   if (scene.integrator == kAutomatic)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
   find_parameter_stiffnesses();
+  stable_.emplace(*simulation_, scene.tolerance > 0 ? 0 : scene.step);
+  bound_stiffnesses();
+  bound_local_stiffnesses();
 }
 
 /// Makes the rest values that the user can change functions of time.
@@ -83,7 +88,8 @@ void LiveSimulation::find_stiffnesses() {
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const StateFunction& stiffness = springs[i]->stiffness;
     if (!stiffness.is_constant() || !(stiffness.constant() > 0)) continue;
-    stiffnesses_.push_back({springs[i].get(), i, stiffness.constant(), nullptr, stiffness.constant()});
+    const double first = stiffness.constant();
+    stiffnesses_.push_back({springs[i].get(), i, first, first, nullptr, first});
   }
 }
 
@@ -117,7 +123,28 @@ void LiveSimulation::find_parameter_stiffnesses() {
     const double stiffness = part.K_s()(k, k);
     if (!(stiffness > 0) || std::any_of(drives.begin(), drives.end(), is_driven)) continue;
     const bool alone = (part.K_s().row(k).array() != 0).count() == 1;
-    parameter_stiffnesses_.push_back({i, stiffness, alone ? 0 : stiffness, nullptr, nullptr, stiffness});
+    parameter_stiffnesses_.push_back(
+        {i, stiffness, alone ? 0 : stiffness, stiffness, nullptr, nullptr, stiffness});
+  }
+}
+
+/// Finds up to which stiffnesses of springs and parameters the fixed steps are stable.
+void LiveSimulation::bound_stiffnesses() {
+  constexpr double most_of_springs = 10, most_of_parameters = 100;
+  const Integrator& method = simulation_->integrator();
+  const auto bounded = [&](double first, double most, double inverse_mass) {
+    return first + stable_->bounded(method, {(most - 1) * first, 0}, inverse_mass).stiffness;
+  };
+  for (SpringStiffness& stiffness : stiffnesses_) {
+    double inverse_masses = 0;
+    for (const Point* end : {&stiffness.spring->a, &stiffness.spring->b})
+      if (end->part != nullptr && !end->part->fixed()) inverse_masses += inverse_mass(*simulation_, *end);
+    stiffness.most = bounded(stiffness.first, most_of_springs, inverse_masses);
+  }
+  for (ParameterStiffness& stiffness : parameter_stiffnesses_) {
+    const RestValue& rest = rest_values_[stiffness.rest];
+    const int k = rest.part->parameters().dynamic_number(rest.parameter);
+    stiffness.most = bounded(stiffness.first, most_of_parameters, inverse_mass(*simulation_, *rest.part, k));
   }
 }
 
@@ -140,6 +167,55 @@ void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
   continue_from(simulation_->state());
 }
 
+/// Makes the factors of local stiffness that the user can change functions of time.
+void LiveSimulation::free_local_stiffnesses() {
+  for (const auto& part : scene_->body.parts()) {
+    if (part->fixed()) continue;
+    part->prepare();
+    if (part->local() == nullptr || part->local_factor() != nullptr) continue;
+    auto path = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{1});
+    part->scale_local(TimeFunction(path));
+    local_stiffnesses_.push_back({part.get(), 1, std::move(path), 1});
+  }
+}
+
+/// Returns whether the steps of the scene are stable at time 0 with this factor.
+bool LiveSimulation::is_stable(const LocalStiffness& stiffness, double factor) {
+  stiffness.path->restart(0, factor);
+  const bool stable = stable_step(*simulation_).step >= scene_->step;
+  stiffness.path->restart(0, 1);
+  return stable;
+}
+
+/// Finds up to which factors the fixed steps are stable: the squared frequencies grow with the factor. Leaves
+/// out the parts for which a smaller factor makes the steps unstable: their modes are faster than the steps.
+void LiveSimulation::bound_local_stiffnesses() {
+  constexpr double most = 100, share = 0.8;
+  if (local_stiffnesses_.empty()) return;
+  if (scene_->tolerance > 0 || simulation_->integrator().local_is_implicit()) {
+    for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.most = most;
+    return;
+  }
+  const double ratio = stable_step(*simulation_).step / scene_->step;
+  std::vector<LocalStiffness> stable;
+  for (LocalStiffness& stiffness : local_stiffnesses_) {
+    if (stiffness.part->local()->modal() != nullptr && !is_stable(stiffness, 0.5)) continue;
+    double factor = std::min(most, ratio * ratio);
+    while (factor > 1 && !is_stable(stiffness, factor)) factor *= share;
+    stiffness.most = std::max(1.0, factor);
+    stable.push_back(stiffness);
+  }
+  local_stiffnesses_ = std::move(stable);
+}
+
+void LiveSimulation::set_local_stiffness(std::size_t i, double factor) {
+  LocalStiffness& stiffness = local_stiffnesses_.at(i);
+  if (!(factor >= 0) || !std::isfinite(factor))
+    throw std::invalid_argument("a factor of " + std::to_string(factor) + " for the local stiffness of " +
+                                stiffness.part->name() + "; expected a number of at least 0");
+  stiffness.next = factor;
+}
+
 void LiveSimulation::set_rest_value(std::size_t i, double value) {
   RestValue& rest = rest_values_.at(i);
   if (!rest.range.contains(value))
@@ -160,6 +236,7 @@ void LiveSimulation::extend_paths(double now, double next) {
     gravity_->append(next, next_gravity_);
   }
   for (RestValue& rest : rest_values_) extend(*rest.path, rest.next, now, next);
+  for (LocalStiffness& stiffness : local_stiffnesses_) extend(*stiffness.path, stiffness.next, now, next);
   for (SpringStiffness& stiffness : stiffnesses_)
     if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
   for (ParameterStiffness& stiffness : parameter_stiffnesses_)
@@ -177,6 +254,7 @@ void LiveSimulation::reset() {
   if (gravity_) scene_->body.changing_gravity.reset();
   gravity_.reset();
   for (RestValue& rest : rest_values_) rest.path->restart(0, rest.next = rest.first);
+  for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.path->restart(0, stiffness.next = 1);
   for (SpringStiffness& stiffness : stiffnesses_) {
     stiffness.spring->stiffness = stiffness.next = stiffness.first;
     stiffness.path.reset();
@@ -208,13 +286,29 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   const MaterialAngles place = angles(point.material);
   Point exact = point;
   exact.material = material_at(place.u, place.v, place.w);
+  const SpringConstants bounded = bound_drag({stiffness, damping}, exact);
   const Vec3<double> start = PlacedPoint(simulation_->model(), exact).at(state);
   GrowingPath path(now, start);
-  Spring& spring = scene_->body.spring(new_name(), exact, world(path.function()), stiffness, damping);
+  Spring& spring =
+      scene_->body.spring(new_name(), exact, world(path.function()), bounded.stiffness, bounded.damping);
   spring.on = now;
   drags_.push_back({&spring, place, std::move(path), start});
   wake(state, scene_->body.index(*point.part));
   continue_from(std::move(state));
+}
+
+/// Returns constants of a drag with which the fixed steps are stable. Enlarges the patch of nodes at the
+/// point, and with it the dragged mass, until they are the wanted ones or the patch is kLargestPatch sizes of
+/// the part large.
+SpringConstants LiveSimulation::bound_drag(const SpringConstants& wanted, Point& at) const {
+  constexpr double kLargestPatch = 0.4;
+  for (;;) {
+    const SpringConstants bounded =
+        stable_->bounded(simulation_->integrator(), wanted, inverse_mass(*simulation_, at));
+    const bool whole = bounded.stiffness == wanted.stiffness && bounded.damping == wanted.damping;
+    if (whole || at.patch == 0 || at.patch >= kLargestPatch * at.part->size()) return bounded;
+    at.patch *= 2;
+  }
 }
 
 /// Returns a name that no spring has.
@@ -259,7 +353,7 @@ void LiveSimulation::set_gravity(const Vec3<double>& gravity) {
   next_gravity_ = gravity;
 }
 
-DragSpring drag_spring(const Part& part) {
+SpringConstants drag_spring(const Part& part) {
   constexpr double frequency = 2, damping_ratio = 0.5;
   const double rate = 2 * kPi * frequency, mass = part.total_mass();
   return {mass * rate * rate, 2 * damping_ratio * mass * rate};

@@ -83,6 +83,15 @@ void set_parameter_stiffnesses(Json& document, const LiveSimulation& simulation)
   }
 }
 
+/// Writes the factors of local stiffness that the user has changed into the parts of the document.
+void set_local_stiffnesses(Json& document, const LiveSimulation& simulation) {
+  for (const LocalStiffness& stiffness : simulation.local_stiffnesses()) {
+    if (stiffness.path->times().size() == 1) continue;
+    const auto number = static_cast<std::size_t>(simulation.scene().body.index(*stiffness.part));
+    document["parts"][number]["local"]["stiffness_factor"] = key_frames_of(*stiffness.path);
+  }
+}
+
 /// Makes the paths of mesh files relative to another folder.
 void move_meshes(Json& document, const std::filesystem::path& from, const std::filesystem::path& to) {
   if (!document.contains("contact") || !document["contact"].contains("obstacles")) return;
@@ -117,6 +126,7 @@ std::string saved_scene(const LiveSimulation& simulation, const std::filesystem:
   if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
   set_rest_values(document, simulation);
   set_parameter_stiffnesses(document, simulation);
+  set_local_stiffnesses(document, simulation);
   move_meshes(document, scene_folder, folder);
   return document.dump(1) + "\n";
 }

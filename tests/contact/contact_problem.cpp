@@ -52,7 +52,7 @@ Solved solve(MultiBody& body, double speed) {
   dynamics.accelerations(0, state.q, state.v, state, work);
   std::vector<int> all;
   for (std::size_t i = 0; i < model.parts().size(); ++i) all.push_back(static_cast<int>(i));
-  dynamics.evaluate_masses(state.q, state.v, all, work);
+  dynamics.evaluate_masses(state.time(), state.q, state.v, all, work);
   Solved solved;
   solved.contacts = ContactFinder(model).find(state, 0, 1e-9);
   ContactProblem problem(model, state, work, solved.contacts);
@@ -128,7 +128,7 @@ TEST_CASE("a motion that no impulse can stop is reported, and stays bounded", "[
   State state = model.initial_state();
   const Dynamics dynamics(model);
   Workspace<double> work;
-  dynamics.evaluate_masses(state.q, state.v, {0}, work);
+  dynamics.evaluate_masses(state.time(), state.q, state.v, {0}, work);
   std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
   REQUIRE(contacts.size() == 2);
   for (Contact& contact : contacts) contact.prescribed_velocity = 0.1 * contact.normal;

@@ -75,7 +75,7 @@ PlaneImpact strike(Basis basis, bool parameters) {
   PlaneImpact struck;
   MeshFinder(model).find(state, 0, struck.contacts);
   Workspace<double> work;
-  dynamics.evaluate_masses(state.q, state.v, {0}, work);
+  dynamics.evaluate_masses(state.time(), state.q, state.v, {0}, work);
   ContactProblem problem(model, state, work, struck.contacts);
   struck.solution = problem.solve(0);
   return struck;

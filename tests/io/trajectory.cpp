@@ -14,6 +14,7 @@
 
 #include <pliant/io/run/run.h>
 #include <pliant/io/run/run_files.h>
+#include <pliant/scene/read_scene.h>
 
 namespace trajectory_test {
 
@@ -170,6 +171,40 @@ TEST_CASE("for more than a hundred parts only totals are written, unless the sce
   numbers.clear();
   whole.row(simulation.state(), numbers);
   CHECK(numbers.size() == all_columns(whole.columns(), simulation.model()).size());
+}
+
+TEST_CASE("the table has the value of each sensor at each recorded state") {
+  const NewFolder folder;
+  Diagnostics diagnostics;
+  const auto scene = parse_scene("s.json", R"json({"gravity": [0, 0, 0], "time": {"end": 1, "step": 0.01},
+    "output": {"frame_rate": 10},
+    "parts": [{"name": "ball", "shape": "sphere", "position": [1, 0, 0], "velocity": [0, 0, 4]}],
+    "sensors": [{"name": "height", "value": "ball.z"}, {"name": "twice the height", "value": "2 * height + t"}]})json",
+                                 {}, diagnostics);
+  Progress silent;
+  RunOptions options;
+  options.folder = folder / "r";
+  Run run(*scene, options, silent);
+  REQUIRE(run.simulate());
+  std::istringstream table(bytes_of(folder / "r" / kTrajectoryFile));
+  std::string line;
+  std::getline(table, line);
+  const std::vector<std::string> header = cells(line);
+  const auto column = [&](const std::string& name) {
+    const auto at = std::find(header.begin(), header.end(), name);
+    REQUIRE(at != header.end());
+    return static_cast<std::size_t>(at - header.begin());
+  };
+  int rows = 0;
+  for (; std::getline(table, line); ++rows) {
+    const std::vector<std::string> text = cells(line);
+    const auto number = [&](const std::string& name) {
+      return std::strtod(text[column(name)].c_str(), nullptr);
+    };
+    CHECK(number("sensor.height") == Approx(4 * number("t")).margin(1e-12));
+    CHECK(number("sensor.twice the height") == Approx(9 * number("t")).margin(1e-12));
+  }
+  CHECK(rows == 11);
 }
 
 }  // namespace trajectory_test

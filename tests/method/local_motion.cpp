@@ -121,7 +121,7 @@ Violation violation(const Simulation& simulation, Workspace<double>& work) {
   Violation worst;
   for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
     const PartModel& m = simulation.model().parts()[i];
-    simulation.dynamics().evaluate_masses(state.q, state.v, {static_cast<int>(i)}, work);
+    simulation.dynamics().evaluate_masses(state.time(), state.q, state.v, {static_cast<int>(i)}, work);
     const PartWorkspace<double>& w = work.parts[i];
     const NodalWorkspace& now = NodalDeformation::of(*w.local);
     const NodalDeformation& local = *m.local->nodal();
@@ -340,7 +340,7 @@ TEST_CASE("dust: every node of a spinning shell without elasticity moves on a st
     auto places = [&] {
       Workspace<double> work;
       const State& s = simulation.state();
-      simulation.dynamics().evaluate_masses(s.q, s.v, {0}, work);
+      simulation.dynamics().evaluate_masses(s.time(), s.q, s.v, {0}, work);
       const PartWorkspace<double>& w = work.parts[0];
       const NodalDeformation& local = *part.local()->nodal();
       const Eigen::Index n = local.n_nodes();
@@ -375,7 +375,7 @@ Twisted twist(MultiBody& body, double h, int steps) {
   for (int i = 0; i < steps; ++i) {
     simulation.step(h);
     const State& state = simulation.state();
-    simulation.dynamics().evaluate_masses(state.q, state.v, {0}, work);
+    simulation.dynamics().evaluate_masses(state.time(), state.q, state.v, {0}, work);
     all.condition = std::max(all.condition, work.parts[0].local->condition());
     all.lowest = std::min(all.lowest, state.q[7]);
     all.highest = std::max(all.highest, state.q[7]);

@@ -73,6 +73,30 @@ TEST_CASE("a servo of a ball joint turns it to a rotation vector, with an equal 
   }
 }
 
+TEST_CASE(
+    "a servo moves a slider to its target with the response of a damped oscillator, and a motor to its rate",
+    "[actuation]") {
+  const auto cart = [](const std::string& drive) {
+    return R"json({"gravity": [0, 0, 0], "parts": [{"name": "cart", "shape": "box", "mass": 2}],
+      "joints": [{"type": "slider", "name": "rail", "from": {"part": "cart", "at": {"u": 0, "v": 0, "w": 0}},
+                  "to": {"world": [0, 0, 0]}, "axis": [1, 0, 0], "drive": )json" +
+           drive + R"json(}],
+      "sensors": [{"name": "x", "value": "rail.position"}, {"name": "rate", "value": "rail.rate"}]})json";
+  };
+  Run servo(cart(R"json({"target": "1", "stiffness": 20, "damping": 3})json"), "dop853", 1e-11);
+  for (int i = 0; i < 10; ++i) {
+    servo.simulation->step(0.1);
+    const auto expected = step_response(20, 3, 2, servo.simulation->time());
+    CHECK(servo.sensor(0) == Approx(expected[0]).margin(1e-9));
+    CHECK(servo.sensor(1) == Approx(expected[1]).margin(1e-8));
+  }
+  Run motor(cart(R"json({"rate": 2, "damping": 1e4, "max_force": 4})json"), "dormand_prince", 1e-9);
+  motor.simulation->step(0.5);
+  CHECK(motor.sensor(1) == Approx(0.5 * 4 / 2).epsilon(1e-7));
+  motor.simulation->step(1);
+  CHECK(motor.sensor(1) == Approx(2).epsilon(1e-3));
+}
+
 TEST_CASE("a motor accelerates by its largest torque until it reaches its rate", "[actuation]") {
   Run run(hinged_bar(R"json("drive": {"rate": 2, "damping": 1e4, "max_force": 4})json"), "dormand_prince",
           1e-9);
@@ -204,11 +228,16 @@ TEST_CASE("a drive acts while its joint acts", "[actuation]") {
 
 TEST_CASE("a force that reads the state keeps the order of each method", "[actuation]") {
   // A nonlinear oscillator with a coupled parameter: f = -40 sin(2 z) - 0.2 vz^3, and a radius that follows
-  // z.
+  // z. The torque of the drive of a hinge depends on its angle, its rate and z.
   const std::string text = R"json({"gravity": [0, 0, 0],
     "parts": [{"name": "ball", "shape": "sphere", "mass": 3, "position": [0, 0, 0.5],
                "parameters": {"r": {"rest": 0.4, "stiffness": 300,
-                                    "drive": {"target": "0.4 + 0.1 * ball.z", "stiffness": 200, "damping": 2}}}}],
+                                    "drive": {"target": "0.4 + 0.1 * ball.z", "stiffness": 200, "damping": 2}}}},
+              {"name": "bar", "shape": "box", "parameters": {"a1": 0.5, "a2": 0.05, "a3": 0.05}, "mass": 2,
+               "position": [3.5, 0, 0]}],
+    "joints": [{"type": "hinge", "name": "pin", "from": {"part": "bar", "at": {"direction": [-1, 0, 0]}},
+                "to": {"world": [3, 0, 0]}, "axis": [0, 1, 0],
+                "drive": {"force": "4 * cos(pin.angle) - 0.3 * pin.rate + 5 * ball.z"}}],
     "tracks": [{"name": "top", "part": "ball", "at": {"direction": [0, 0, 1]}}],
     "forces": [{"part": "ball", "at": {"u": 0, "v": 0, "w": 0},
                 "force": ["-2 * top.vz", 0, "-40 * sin(2 * ball.z) - 0.2 * ball.vz^3"]}]})json";
@@ -221,7 +250,8 @@ TEST_CASE("a force that reads the state keeps the order of each method", "[actua
   };
   const VecX<double> exact = state("dop853", 2000);
   const std::vector<std::pair<std::string, double>> orders{
-      {"semi_implicit_euler", 1}, {"implicit_midpoint", 2}, {"rk4", 4}, {"dormand_prince", 5}, {"esdirk", 4}};
+      {"semi_implicit_euler", 1}, {"implicit_midpoint", 2}, {"rk4", 4}, {"dormand_prince", 5}, {"esdirk", 4},
+      {"linearly_implicit", 1}};
   for (const auto& [method, order] : orders) {
     std::vector<double> errors;
     for (const int steps : {32, 64, 128}) errors.push_back((state(method, steps) - exact).norm());

@@ -133,7 +133,7 @@ TEST_CASE("N55: if the contacts of a pile are not solved to rounding, the residu
     }
     Workspace<double> work;
     dynamics.accelerations(0, state.q, state.v, state, work);
-    dynamics.evaluate_masses(state.q, state.v, all, work);
+    dynamics.evaluate_masses(state.time(), state.q, state.v, all, work);
     const std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
     ContactProblem problem(model, state, work, contacts);
     const ContactSolution solution = problem.solve(0);

@@ -32,7 +32,7 @@ OBJECTS = {
              "orientation": KEEP, "velocity": "m/s", "angular_velocity": "1/s", "fixed": KEEP, "motion": "[motion]",
              "resolution": KEEP, "elasticity": "[law]", "alpha": "1/s", "beta": "s", "drag": "1/s"},
     "local": {"basis": KEEP, "degree": KEEP, "modes": KEEP, "resolution": KEEP, "order": KEEP, "laws": "[law]",
-              "alpha": "1/s", "beta": "s", "dents": "[dent]"},
+              "alpha": "1/s", "beta": "s", "stiffness_factor": "rad", "dents": "[dent]"},
     "law": {"type": KEEP, "E": "Pa", "nu": KEEP, "thickness": "m", "w0": "N/m^3", "w1": "N/m", "p": "Pa",
             "p0": "Pa", "p_ext": "Pa", "gamma": KEEP},
     "dent": {"at": "m", "radius": "m", "displacement": "m", "velocity": "m/s"},

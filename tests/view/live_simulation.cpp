@@ -68,7 +68,7 @@ std::string jelly_scene(const std::string& time) {
 void drag(LiveSimulation& live, const std::string& part, int k) {
   const Part& dragged = *live.scene().body.find(part);
   if (k == 20 || k == 70) {
-    const DragSpring spring = drag_spring(dragged);
+    const SpringConstants spring = drag_spring(dragged);
     live.grab(point(dragged, 0.3, k == 20 ? 1.1 : -2.3), spring.stiffness, spring.damping);
   }
   if (live.is_dragging()) {
@@ -165,7 +165,7 @@ TEST_CASE("a dragged point follows the mouse in the next interval") {
   LiveSimulation still(*scene), moved(*other);
   for (LiveSimulation* live : {&still, &moved}) {
     const Part& bar = *live->scene().body.find("bar");
-    const DragSpring spring = drag_spring(bar);
+    const SpringConstants spring = drag_spring(bar);
     live->grab(point(bar, 0.3, 1.1), spring.stiffness, spring.damping);
     for (int k = 0; k < 10; ++k) live->advance();
   }
@@ -412,6 +412,67 @@ TEST_CASE("parameters with a stiffness matrix can be made stiffer only, and are 
                });
 }
 
+TEST_CASE("changed local stiffnesses are repeated to the last bit, and close the balance") {
+  const auto change = [](LiveSimulation& live, int k) {
+    REQUIRE(live.local_stiffnesses().size() == 1);
+    CHECK(live.local_stiffnesses()[0].most > 1.5);
+    if (k == 10) live.set_local_stiffness(0, 1.5);
+    if (k == 20) live.set_local_stiffness(0, 0.2);
+    if (k == 35) live.set_local_stiffness(0, 1);
+    CHECK_THROWS_WITH(live.set_local_stiffness(0, -1), test::has_text("jelly"));
+  };
+  SECTION("explicit steps") {
+    check_replay(jelly_scene(R"({"step": 0.001, "integrator": "rk4"})"), 50,
+                 [&](LiveSimulation& live, int k) {
+                   change(live, k);
+                   drag(live, "jelly", k);
+                   const Ledger ledger = live.ledger();  // the drags alone have an error of the same size
+                   CHECK(std::abs(ledger.balance) <=
+                         1e-8 + 1e-2 * std::abs(ledger.work[static_cast<int>(Work::anchors)]));
+                 });
+  }
+  SECTION("implicit steps") {
+    check_replay(jelly_scene(R"({"step": 0.004, "integrator": "linearly_implicit"})"), 50, change);
+  }
+  SECTION("modes with a tolerance") {
+    check_replay(R"({"time": {"tolerance": 1e-6}, "gravity": [0, 0, 0],
+      "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.2}, "density": 500,
+                 "local": {"basis": "polynomial", "degree": 2, "laws": [{"type": "elastic", "E": 20000, "nu": 0.3}],
+                           "dents": [{"at": [0.3, 0, 0], "radius": 0.2, "displacement": [0.05, 0, 0]}]}}]})",
+                 50, change);
+  }
+  SECTION("a part that sleeps") {
+    check_replay(R"({"time": {"step": 0.001, "integrator": "semi_implicit_euler"},
+      "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.1}, "density": 500,
+                 "position": [0, 0, 0.101],
+                 "local": {"resolution": 2, "laws": [{"type": "neo_hookean", "E": 20000, "nu": 0.3}], "alpha": 20}}],
+      "contact": {"friction": 0.5, "sleep": {"speed": 0.05, "after": 0.1}, "planes": [{"name": "floor"}]}})",
+                 60, change);
+  }
+}
+
+TEST_CASE("the largest factor of the local stiffness keeps the fixed steps stable, also of modes", "[long]") {
+  const std::unique_ptr<Scene> scene = parse(jelly_scene(R"({"step": 0.002, "integrator": "rk4"})"));
+  LiveSimulation live(*scene);
+  REQUIRE(live.local_stiffnesses().size() == 1);
+  const double most = live.local_stiffnesses()[0].most;
+  CAPTURE(most);
+  CHECK(most > 1);
+  CHECK(most < 100);
+  live.set_local_stiffness(0, most);
+  for (int k = 0; k < 120; ++k) {
+    drag(live, "jelly", k);
+    live.advance();
+  }
+  CHECK(live.simulation().state().v.cwiseAbs().maxCoeff() < 20);
+  // The modes of a stiff part are faster than its steps, which are exact for the stiffness of the scene only.
+  const std::unique_ptr<Scene> stiff =
+      parse(R"({"time": {"step": 0.01, "integrator": "rk4"}, "gravity": [0, 0, 0],
+      "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.2}, "density": 500,
+                 "local": {"basis": "polynomial", "degree": 3, "laws": [{"type": "elastic", "E": 2e7, "nu": 0.3}]}}]})");
+  CHECK(LiveSimulation(*stiff).local_stiffnesses().empty());
+}
+
 TEST_CASE("a reset simulation repeats its first motion") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-6})"));
   LiveSimulation live(*scene);
@@ -427,6 +488,64 @@ TEST_CASE("a reset simulation repeats its first motion") {
   CHECK(live.simulation().time() == 0);
   for (int k = 0; k < 30; ++k) live.advance();
   CHECK(same_bits(live.simulation().state().q, first.q));
+}
+
+TEST_CASE(
+    "a drag of any soft part of the paper's figures is stable, and the held point comes nearer to the hand",
+    "[long]") {
+  for (const char* name : {"pull", "soft_pull", "balloons", "dragonfly", "springboard"})
+    for (const double strength : {1.0, 1000.0}) {  // the middle and the end of the slider of the window
+      Diagnostics diagnostics;
+      const std::unique_ptr<Scene> scene =
+          read_scene(std::string(PLIANT_SCENES) + "/" + name + ".json", {}, diagnostics);
+      LiveSimulation live(*scene);
+      for (const auto& part : scene->body.parts()) {
+        if (part->fixed() || part->local() == nullptr) continue;
+        CAPTURE(name, part->name(), strength);
+        const SpringConstants spring = drag_spring(*part);
+        Point held = point(*part, 0.2, 0.5);
+        held.patch = 0.1 * part->size();
+        live.grab(held, strength * spring.stiffness, std::sqrt(strength) * spring.damping);
+        const Vec3<double> hand = live.drags().back().target + 0.3 * part->size() * Vec3<double>::UnitZ();
+        live.drag_to(hand);
+        const auto distance = [&] {
+          return (PlacedPoint(live.simulation().model(), live.drags().back().spring->a)
+                      .at(live.simulation().state()) -
+                  hand)
+              .norm();
+        };
+        const double before = distance();
+        double nearest = before;
+        for (int k = 0; k < 15; ++k) {
+          REQUIRE_NOTHROW(live.advance());
+          nearest = std::min(nearest, distance());
+          REQUIRE(distance() < 3 * before);
+        }
+        CHECK(nearest < 0.9 * before);
+        live.release();
+        for (int k = 0; k < 5; ++k) REQUIRE_NOTHROW(live.advance());
+      }
+    }
+}
+
+TEST_CASE("the largest stiffness of a spring or a parameter keeps the fixed steps stable") {
+  const std::unique_ptr<Scene> scene =
+      parse(R"({"time": {"step": 0.01, "integrator": "rk4"}, "gravity": [0, 0, 0],
+    "parts": [{"name": "bar", "shape": "box", "deformations": ["bend"], "mass": 2,
+               "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "bend.angle": {"rest": 0.2, "initial": 0, "stiffness": 300}}}],
+    "springs": [{"name": "cord", "from": {"part": "bar", "at": {"direction": [0, 0, 1]}}, "to": {"world": [0, 0, 1]},
+                 "stiffness": 4000, "rest_length": 0.5}]})");
+  LiveSimulation live(*scene);
+  const SpringStiffness& spring = live.stiffnesses().at(0);
+  const ParameterStiffness& bend = live.parameter_stiffnesses().at(0);
+  CAPTURE(spring.most, bend.most);
+  CHECK(spring.most > spring.first);
+  CHECK(bend.most > bend.first);
+  CHECK((spring.most < 10 * spring.first || bend.most < 100 * bend.first));
+  live.set_stiffness(0, spring.most);
+  live.set_parameter_stiffness(0, bend.most);
+  for (int k = 0; k < 100; ++k) live.advance();
+  CHECK(live.simulation().state().v.cwiseAbs().maxCoeff() < 100);
 }
 
 TEST_CASE("only points of moving parts can be dragged") {

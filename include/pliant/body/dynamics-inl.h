@@ -83,21 +83,20 @@ PLIANT_INLINE void Dynamics::factor_joints(double t, const VecX<double>& q, cons
   evaluate_and_factor_joints<double>(*model_, island, t, work.parts, work.joints, std::ref(place));
 }
 
-PLIANT_INLINE void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part,
+PLIANT_INLINE void Dynamics::evaluate_frame(double t, const VecX<double>& q, const VecX<double>& v, int part,
                                             Workspace<double>& work) const {
   work.parts.resize(model_->parts().size());
   work.without_inertia.resize(model_->parts().size());
   const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
-  // The time 0 has no effect: the positions of a part with coordinates depend on q and v alone.
-  detail::evaluate_positions<double>(m, 0, q, v, w);
+  detail::evaluate_positions<double>(m, t, q, v, w);
   detail::evaluate_mass<double>(m, w);
 }
 
-PLIANT_INLINE void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v,
+PLIANT_INLINE void Dynamics::evaluate_masses(double t, const VecX<double>& q, const VecX<double>& v,
                                              const std::vector<int>& parts, Workspace<double>& work) const {
   for (const int i : parts) {
-    evaluate_frame(q, v, i, work);
+    evaluate_frame(t, q, v, i, work);
     detail::factor_part_mass(*model_, i, work);
   }
 }

@@ -94,12 +94,14 @@ class Dynamics {
   /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion, where o is the
   /// product of quaternions. The rates of all other coordinates are their velocities.
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
-  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts. parts:
-  /// numbers of parts that have coordinates.
-  void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
+  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts at time
+  /// t (s). parts: numbers of parts that have coordinates.
+  void evaluate_masses(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
-  /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
-  void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
+  /// Computes frame, attachment points and mass matrix of a part that has coordinates at time t (s), without
+  /// the factor.
+  void evaluate_frame(double t, const VecX<double>& q, const VecX<double>& v, int part,
+                      Workspace<double>& work) const;
   /// Returns the kinetic and potential energy of some parts and of all springs with an end on one of these
   /// parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are
   /// ignored.

@@ -52,7 +52,7 @@ PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const Vec
                                       const std::vector<int>& parts, Workspace<double>& work) const {
   Ledger ledger;
   for (const int i : parts) {
-    evaluate_frame(q, v, i, work);
+    evaluate_frame(t, q, v, i, work);
     add_energy(t, model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)],
                ledger);
   }

@@ -16,7 +16,7 @@ enum class Work {
   drag,            ///< drag nu M v
   spring_damping,  ///< dampers of the springs
   anchors,         ///< prescribed motion of ends of springs and joints
-  actuation,       ///< rest values and gravity that change in time
+  actuation,       ///< drives, muscles; changes of rest values, gravity, local stiffness
   forces,          ///< forces at points, and torques
   limits,          ///< limits of parameters, and taut strings
   contact,         ///< normal impulses of contacts, and separation of overlapping parts

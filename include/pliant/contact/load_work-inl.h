@@ -68,7 +68,7 @@ PLIANT_INLINE Evaluation<double> LoadWork::evaluate(double t, const State& state
   work_.parts.resize(model.parts().size());
   for (const int i : loaded_)
     if (model.parts()[at(i)].q0 >= 0)
-      dynamics_.evaluate_frame(state.q, state.v, i, work_);
+      dynamics_.evaluate_frame(t, state.q, state.v, i, work_);
     else
       detail::evaluate_positions<double>(model.parts()[at(i)], t, state.q, state.v, work_.parts[at(i)]);
   return e;

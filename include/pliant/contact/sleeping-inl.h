@@ -134,8 +134,8 @@ PLIANT_INLINE void Sleeping::find_actuation() {
   }
 }
 
-/// Finds the drives that change: rest values, forces, torques, springs, drives of joints and parameters,
-/// prescribed motions at springs and joints, and gravity.
+/// Finds the drives that change: rest values, factors of local stiffness, forces, torques, springs, drives of
+/// joints and parameters, prescribed motions at springs and joints, and gravity.
 PLIANT_INLINE void Sleeping::find_drives() {
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];
@@ -144,6 +144,8 @@ PLIANT_INLINE void Sleeping::find_drives() {
                            const VecMax<double> now = m.rest_at(t);
                            return m.rest_at(t + h) != now || m.rest_at(t + 0.5 * h) != now;
                          }});
+    if (const TimeFunction* factor = m.part->local_factor(); factor != nullptr && !factor->is_constant())
+      drives_.push_back({i, [factor](double t, double h) { return sleeping::differs(*factor, t, h); }});
   }
   auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
   for (const ForceModel& f : model_.forces()) {

@@ -284,7 +284,7 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
   const Model& model = dynamics_.model();
   State& state = step.state;
   auto momenta_of = [&](const State& at_end) {
-    dynamics_.evaluate_masses(at_end.q, at_end.v, parts, scratch_);
+    dynamics_.evaluate_masses(step.t, at_end.q, at_end.v, parts, scratch_);
     return step_doubling::local_momenta(model, parts, scratch_);
   };
   const std::vector<Vec3<double>> of_whole = momenta_of(whole);

@@ -120,7 +120,7 @@ PLIANT_INLINE void evaluate_touched(const Dynamics& dynamics, const State& state
       if (m.island < 0 && moves_by_nodes(m, work.parts[at(side.part)])) by_nodes.push_back(side.part);
     }
   for (std::vector<int>* numbers : {&alone, &islands, &by_nodes}) touched_parts::sort_unique(*numbers);
-  dynamics.evaluate_masses(state.q, state.v, alone, work);
+  dynamics.evaluate_masses(t, state.q, state.v, alone, work);
   for (const int i : by_nodes)
     model.parts()[at(i)].local->compliance(model.parts()[at(i)].joint_points, *work.parts[at(i)].local);
   for (const int i : islands)

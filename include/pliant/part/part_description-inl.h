@@ -93,10 +93,14 @@ PLIANT_INLINE void PartDescription::refuse(const std::string& what) const {
   throw std::invalid_argument("part '" + name_ + "': " + what);
 }
 
-PLIANT_INLINE void PartDescription::change() {
+PLIANT_INLINE void PartDescription::require_unused() const {
   if (use_.use_count() > 1)
     throw std::logic_error("part '" + name_ +
                            "' is in a simulation and cannot be changed until the simulation ends");
+}
+
+PLIANT_INLINE void PartDescription::change() {
+  require_unused();
   changed_ = true;
 }
 
@@ -303,6 +307,17 @@ PLIANT_INLINE Part& PartDescription::deform_locally(LocalSettings settings) {
   if (settings.order != 1 && settings.order != 2)
     refuse("there are no elements of order " + std::to_string(settings.order) + "; expected 1 or 2");
   local_settings_ = std::make_unique<const LocalSettings>(std::move(settings));
+  return part();
+}
+
+PLIANT_INLINE Part& PartDescription::scale_local(TimeFunction factor) {
+  require_unused();
+  if (!local_settings_) refuse("it does not deform locally, so that its local stiffness has no factor");
+  if (const double first = factor.value(0); !(first >= 0) || !std::isfinite(first))
+    refuse("the factor of its local stiffness is " + detail::part_text(first) +
+           " at time 0; expected a number >= 0");
+  const bool one = factor.is_constant() && factor.value(0) == 1;
+  local_factor_ = one ? nullptr : std::make_unique<const TimeFunction>(std::move(factor));
   return part();
 }
 

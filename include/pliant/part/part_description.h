@@ -89,6 +89,10 @@ class PartDescription {
   /// Makes the part deform locally, with nodal displacements or modes (LocalSettings::Basis). The mesh covers
   /// the surface of a shell or the body of a solid.
   Part& deform_locally(LocalSettings settings);
+  /// Multiplies the forces of all laws of the local deformation, and their damping by beta, by a function of
+  /// time that is continuous and at least 0; 1 by default. The energy of the laws has this factor too, and a
+  /// change of the factor does work of actuation. The part must deform locally.
+  Part& scale_local(TimeFunction factor);
   /// Fixes the part: it does not move and has no coordinates.
   Part& fix();
   /// Prescribes the motion of the part, including the position and orientation at time 0. The part has no
@@ -112,6 +116,8 @@ class PartDescription {
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
   double drag() const { return drag_; }
+  /// The function of scale_local(); nullptr if the factor is 1.
+  const TimeFunction* local_factor() const { return local_factor_.get(); }
   /// The frame at time 0: position (m, world), orientation (body to world), velocity (m/s, world) and angular
   /// velocity (rad/s, body frame).
   const Vec3<double>& c0() const { return c0_; }
@@ -168,8 +174,10 @@ class PartDescription {
   void update_parameters() { parameters_.update(); }
 
  private:
-  /// Marks the description as changed; every setter calls this function first. Throws std::logic_error while
-  /// a Model uses the part.
+  /// Throws std::logic_error while a Model uses the part.
+  void require_unused() const;
+  /// Marks the description as changed; every setter of a quantity on which the constants depend calls this
+  /// function first. Throws std::logic_error while a Model uses the part.
   void change();
   /// Throws if the limits, the rest value or the initial value of a dynamic parameter are not admissible, or
   /// if the rest value of a frozen parameter changes in time.
@@ -192,6 +200,7 @@ class PartDescription {
   std::unique_ptr<const MassDistribution> mass_distribution_;
   std::unique_ptr<const PrescribedMotion> motion_;
   std::unique_ptr<const LocalSettings> local_settings_;
+  std::unique_ptr<const TimeFunction> local_factor_;
   std::unique_ptr<const ContinuumSettings> continuum_settings_;
   MatX<double> stiffness_;  // K_s over all parameters, frozen ones included
   double alpha_ = 0, beta_ = 0, drag_ = 0;

@@ -140,7 +140,7 @@ class Assembly {
 
   /// Returns the smallest ratio of stiffness to inertia over the parameters; infinite if none has stiffness.
   double smallest_stiffness_ratio() {
-    dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
+    dynamics_.evaluate_masses(state_.time(), state_.q, state_.v, island_.parts, work_);
     double least = kInfinite;
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
@@ -155,7 +155,7 @@ class Assembly {
 
   /// Sets the metric M + K_s / eps of the parts, with the inertia of rotation multiplied by rotation_cost.
   void make_metric(double rotation_cost) {
-    dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
+    dynamics_.evaluate_masses(state_.time(), state_.q, state_.v, island_.parts, work_);
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];

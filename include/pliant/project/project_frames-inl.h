@@ -94,7 +94,7 @@ inline void project_frame(StepContext& step, std::size_t i) {
   if (m.local->nodal() != nullptr && conditions_met(m, state, work.parts[i])) return;
   if (!all_finite(state.q) || !all_finite(state.v)) return;
   const int part = static_cast<int>(i);
-  dynamics.evaluate_frame(state.q, state.v, part, work);
+  dynamics.evaluate_frame(step.t, state.q, state.v, part, work);
   PartWorkspace<double>& w = work.parts[i];
   check_condition(m, *w.local, step.t);
   if (m.local->nodal() == nullptr) return;
@@ -116,9 +116,9 @@ inline void project_frame(StepContext& step, std::size_t i) {
     const Vec3<double> axis = angle > 0 ? Vec3<double>(rotation / angle) : Vec3<double>::UnitX();
     local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
     // Evaluate the reference shape at the new parameters.
-    if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
+    if (m.n_s > 0) dynamics.evaluate_frame(step.t, state.q, state.v, part, work);
     Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
-    dynamics.evaluate_frame(state.q, state.v, part, work);
+    dynamics.evaluate_frame(step.t, state.q, state.v, part, work);
   }
   const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
   part_velocities(m, state.v) = world_velocity(w, v_r);

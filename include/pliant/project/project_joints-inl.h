@@ -134,7 +134,7 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
   if (group.island() != nullptr)
     dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
   else
-    dynamics.evaluate_masses(state.q, state.v, parts, work);
+    dynamics.evaluate_masses(step.t, state.q, state.v, parts, work);
   // scratch has the evaluation before the projection of the coordinates. This projection does not change
   // velocities, so keep_momenta() reads them from scratch.
   if (pushed) keep_momenta(group, scratch, work, state);
@@ -323,7 +323,7 @@ PLIANT_INLINE void project_limits(StepContext& step) {
   Workspace<double> scratch;
   projection::for_each_alone(step.model(), step.work, [&](const Group<double, kMaxVelocities>& group) {
     if (!projection::passes_limit(group.model(0), state)) return;
-    step.dynamics.evaluate_masses(state.q, state.v, projection::parts_of(group), step.work);
+    step.dynamics.evaluate_masses(step.t, state.q, state.v, projection::parts_of(group), step.work);
     projection::project_group(step, group, false, scratch);
   });
 }

@@ -14,6 +14,7 @@
 
 #include <pliant/math/header_only.h>
 #include <pliant/method/free_oscillation.h>
+#include <pliant/part/local/modal_deformation.h>
 #include <pliant/simulate/choose_integrator.h>
 #include <pliant/simulate/fast_motion.h>
 
@@ -316,6 +317,7 @@ class StableStepSearch {
                               " exactly, so that longer steps may be stable in spite of the springs";
       }
     }
+    if (const TimeFunction* factor = m.part->local_factor(); factor != nullptr) limit_by_factor(m, *factor);
     if (!is_implicit(m)) return;
     const Bound bound = bound_springs(model_, state_.time(), i);
     limit_by(stable_step_of(method_, bound.K, bound.D), "the springs at " + name);
@@ -325,6 +327,21 @@ class StableStepSearch {
     if (m.island >= 0)
       smallest_.uncounted = "the joints of parts that deform locally are not included, because " +
                             std::string(method_.name()) + " integrates their elasticity implicitly";
+  }
+
+  /// Limits the step by a factor of the local stiffness. Free modes are integrated exactly without the
+  /// factor, and the rest of their forces by the method.
+  void limit_by_factor(const PartModel& m, const TimeFunction& factor) {
+    const std::string name = "part '" + m.part->name() + "'";
+    const double now = factor.value(state_.time());
+    if (m.local->modal() != nullptr && !is_implicit(m) && oscillates_freely(m) && now != 1) {
+      const Oscillators modes = m.local->modal()->oscillators_at(std::max(now, 1.0));
+      limit_by(std::min(stable_step_of(method_, modes.omega2.maxCoeff(), modes.damping.maxCoeff()),
+                        kMaxPhase / std::sqrt(modes.omega2.maxCoeff())),
+               "the modes of " + name + ", whose stiffness has a factor");
+    }
+    if (!factor.is_constant())
+      smallest_.uncounted = "the factor of the local stiffness of " + name + " changes in time";
   }
 
   const Integrator& method_;

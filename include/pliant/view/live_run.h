@@ -1,5 +1,5 @@
-// A LiveSimulation in its own thread. The thread of the window sends commands and reads snapshots; it never
-// waits for a step.
+// A LiveSimulation in its own thread. The thread of the window sends commands and reads snapshots; only
+// wait_for() waits for a step.
 #pragma once
 
 #include <condition_variable>
@@ -34,6 +34,7 @@ struct Snapshot {
   std::vector<ForceArrow> contacts, joints, loads;  ///< forces of the kinds that are shown
   std::string failure;  ///< message of the step that failed; only a reset continues. Empty without a failure
   std::string refusal;  ///< message of the last command, if it failed
+  std::string report;   ///< text of the last command of post_report()
 };
 
 /// The positions of the tracked points at the end of an interval.
@@ -54,6 +55,9 @@ class LiveRun {
   /// Performs a command on the thread of the simulation before its next interval. If the command throws, the
   /// next snapshot has the message.
   void post(Command command);
+  /// Performs a command likewise. Later snapshots have the text that it returns. A command that is posted
+  /// before the object is destroyed is performed.
+  void post_report(std::function<std::string(LiveSimulation&)> command);
   void play();
   void pause();
   /// Advances by one interval, then pauses.
@@ -96,7 +100,7 @@ class LiveRun {
   // Of the thread of the simulation:
   class Clock;
   std::unique_ptr<Clock> clock_;
-  std::string failure_, refusal_;
+  std::string failure_, refusal_, report_;
   double sampled_time_ = -1;  // of the last sample of the tracks, s
   Ledger ledger_;
   ShownForces shown_;

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <pliant/math/time/linear_keys.h>
 #include <pliant/scene/scene.h>
 #include <pliant/simulate/simulation.h>
+#include <pliant/view/stable_stiffness.h>
 
 namespace pliant {
 
@@ -47,8 +49,9 @@ struct RestValue {
 /// The stiffness of a spring of the scene, which the user can change.
 struct SpringStiffness {
   Spring* spring;
-  std::size_t number;                ///< of the spring in the scene
-  double first;                      ///< value in the scene, N/m
+  std::size_t number;  ///< of the spring in the scene
+  double first;        ///< value in the scene, N/m
+  double most;         ///< fixed steps are stable up to this value, at most 10 times `first`, N/m
   std::shared_ptr<LinearKeys> path;  ///< the values so far
   double next;                       ///< value at the end of the next interval, N/m
 };
@@ -60,9 +63,19 @@ struct ParameterStiffness {
   std::size_t rest;                   ///< number of the parameter in LiveSimulation::rest_values()
   double first;                       ///< value in the scene, N/m or N m: the diagonal entry of K_s
   double least;                       ///< 0, or `first` if the row of K_s has other entries that are not zero
+  double most;                        ///< fixed steps are stable up to this value, at most 100 times `first`
   Drive* servo;                       ///< nullptr if the user has not changed the stiffness
   std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far
   double next;                        ///< value at the end of the next interval, that of the servo included
+};
+
+/// The stiffness of the local deformation of a part, which the user can change by a factor of all its laws
+/// (PartDescription::scale_local).
+struct LocalStiffness {
+  const Part* part;
+  double most;  ///< the fixed steps of the scene are stable up to this factor, at most 100
+  std::shared_ptr<LinearKeys> path;  ///< the factors so far
+  double next;                       ///< factor at the end of the next interval
 };
 
 /// Advances a scene by intervals of equal length, 1 / rate(). All actions of the user take effect between two
@@ -89,8 +102,10 @@ class LiveSimulation {
   const Scene& scene() const { return *scene_; }
 
   /// Begins to drag a point of a moving part by a spring of rest length 0 and a damper (N/m, N s/m) between
-  /// this point and a point of the world, which starts at the position of the point. Throws
-  /// std::invalid_argument if the point is not on a moving part, or for a negative or infinite constant.
+  /// this point and a point of the world, which starts at the position of the point. A patch grows and both
+  /// constants are reduced if the fixed steps of the scene would be unstable with them (stable_stiffness.h).
+  /// Throws std::invalid_argument if the point is not on a moving part, or for a negative or infinite
+  /// constant.
   void grab(const Point& point, double stiffness, double damping);
   /// Moves the point of the world of the last drag to a position (m, world): it arrives there at the end of
   /// the next interval.
@@ -127,6 +142,14 @@ class LiveSimulation {
   /// std::invalid_argument for a value below ParameterStiffness::least, or not finite.
   void set_parameter_stiffness(std::size_t i, double value);
 
+  /// The stiffnesses of the local deformation of moving parts that have no factor in the scene. A part whose
+  /// fixed steps would be unstable with another factor is left out. The order does not change.
+  const std::vector<LocalStiffness>& local_stiffnesses() const { return local_stiffnesses_; }
+  /// Changes the factor of the laws of a part linearly within the next interval. i: its number in
+  /// local_stiffnesses(). The change does work of actuation. Throws std::invalid_argument for a factor that
+  /// is negative or not finite.
+  void set_local_stiffness(std::size_t i, double factor);
+
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
   /// The path of gravity; nullptr if the user has not changed it.
@@ -136,9 +159,14 @@ class LiveSimulation {
   void free_rest_values();
   void find_stiffnesses();
   void find_parameter_stiffnesses();
+  void bound_stiffnesses();
+  void free_local_stiffnesses();
+  void bound_local_stiffnesses();
+  bool is_stable(const LocalStiffness& stiffness, double factor);
   void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);
+  SpringConstants bound_drag(const SpringConstants& wanted, Point& at) const;
   std::string new_name() const;
 
   Scene* scene_;
@@ -146,20 +174,19 @@ class LiveSimulation {
   std::int64_t steps_ = 0;  // fixed steps in an interval; 0 with a tolerance
   double rate_;
   std::unique_ptr<Simulation> simulation_;
+  std::optional<StableStiffness> stable_;  // set by the constructor
   std::int64_t intervals_ = 0;
   std::vector<Drag> drags_;
   std::unique_ptr<GrowingPath> gravity_;
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
   std::vector<ParameterStiffness> parameter_stiffnesses_;
+  std::vector<LocalStiffness> local_stiffnesses_;
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };
 
-/// Returns the stiffness (N/m) with which a part of its mass oscillates twice in a second, and the damping (N
-/// s/m) of half the critical value.
-struct DragSpring {
-  double stiffness, damping;
-};
-DragSpring drag_spring(const Part& part);
+/// Returns the stiffness with which a part of its mass oscillates twice in a second, and half of the critical
+/// damping.
+SpringConstants drag_spring(const Part& part);
 
 }  // namespace pliant

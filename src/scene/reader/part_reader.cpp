@@ -72,8 +72,10 @@ std::unique_ptr<Part> PartReader::read() {
   part_->velocity(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
   if (r_.given("motion")) read_motion(r_.object("motion"));
-  if (r_.given("local") || r_.faulty("local"))
+  if (r_.given("local") || r_.faulty("local")) {
     read_local(r_.object("local"), body_.joint_solver.make_factor, faults_, *part_);
+    read_local_factor(r_.object("local"));
+  }
   read_elasticity();
   check_rigid_keys();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
@@ -112,6 +114,22 @@ void PartReader::read_mass_distribution(const JsonValue& value) {
   } catch (const FormulaError& fault) {
     faults_.in_string(value, fault.offset(), fault.reason());
   }
+}
+
+/// Reads the factor of the stiffness of the local deformation.
+void PartReader::read_local_factor(const Reader& local) {
+  if (!local.given("stiffness_factor") || local.faulty("stiffness_factor")) return;
+  const JsonValue& value = local.at("stiffness_factor");
+  const std::optional<TimeFunction> factor = TimeReader(end_, faults_).function(value, Needs::value_and_rate);
+  if (!factor) return;
+  constexpr int kTimes = 256;  // those at which TimeReader evaluates the function
+  for (int k = 0; k <= kTimes; ++k) {
+    const double t = k * end_ / kTimes, now = factor->value(t);
+    if (now >= 0) continue;
+    return faults_.value(value,
+                         "it is " + shortest(now) + " at t = " + shortest(t) + " s; expected at least 0");
+  }
+  part_->scale_local(*factor);
 }
 
 /// Reads the elasticity of the part, or of its material if the part has none.

@@ -31,6 +31,7 @@ class PartReader {
  private:
   double property(const char* key) const;
   void read_mass_distribution(const JsonValue& value);
+  void read_local_factor(const Reader& local);
   void read_elasticity();
   void read_stiffness(const Reader& r);
   bool check_names(const JsonValue& names);

@@ -4,6 +4,7 @@
 
 #include <pliant/part/continuum.h>
 #include <pliant/part/local/local_laws.h>
+#include <pliant/scene/time_value.h>
 
 #include "scene/scene_faults.h"
 
@@ -72,6 +73,10 @@ schema::Record local_record() {
                 "[{\"type\": \"membrane\", \"E\": 1e5, \"thickness\": 0.001}]"),
        optional("alpha", number(at_least(0), "1/s"), "Damping of the nodes in proportion to mass.", "0"),
        optional("beta", number(at_least(0), "s"), "Damping of the nodes in proportion to stiffness.", "0"),
+       optional("stiffness_factor", time_function("1"),
+                "Factor of the forces of all laws and of their damping by beta, at least 0. A change of the "
+                "factor does work of actuation.",
+                "1"),
        optional("dents", array(record(dent)), "Initial displacements and velocities; they add up.", "[]")}};
 }
 

@@ -60,6 +60,7 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
     rest_values_ = simulation.rest_values();
     stiffnesses_ = simulation.stiffnesses();
     parameter_stiffnesses_ = simulation.parameter_stiffnesses();
+    local_stiffnesses_ = simulation.local_stiffnesses();
   });
   show_again();
   const State& state = snapshot_->state;
@@ -152,6 +153,7 @@ void LiveMotion::reset() {
   for (RestValue& rest : rest_values_) rest.next = rest.first;
   for (SpringStiffness& stiffness : stiffnesses_) stiffness.next = stiffness.first;
   for (ParameterStiffness& stiffness : parameter_stiffnesses_) stiffness.next = stiffness.first;
+  for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.next = 1;
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
 }
 
@@ -174,7 +176,7 @@ void LiveMotion::toggle_forces() {
 std::optional<std::string> LiveMotion::grab(const Hit& hit) {
   const std::optional<Point> point = points_.at(hit);
   if (!point || point->part->fixed()) return {};
-  DragSpring spring = drag_spring(*point->part);
+  SpringConstants spring = drag_spring(*point->part);
   const double factor = std::pow(10.0, drag_strength_);
   spring.stiffness *= factor;
   spring.damping *= std::sqrt(factor);
@@ -193,13 +195,12 @@ void LiveMotion::release() {
 }
 
 std::string LiveMotion::save() {
-  std::string text;
-  run_.wait_for([&](LiveSimulation& simulation) {
-    text = saved_scene(simulation, options_.scene_folder, options_.saved.parent_path());
+  run_.post_report([options = options_](LiveSimulation& simulation) {
+    std::ofstream file(options.saved);
+    file << saved_scene(simulation, options.scene_folder, options.saved.parent_path());
+    return (file.flush() ? "saved in " : "cannot write ") + options.saved.string();
   });
-  std::ofstream file(options_.saved);
-  if (!(file << text).flush()) return "cannot write " + options_.saved.string();
-  return "saved in " + options_.saved.string();
+  return {};  // the next snapshots have the text
 }
 
 void LiveMotion::add_to_panel(const std::string& selected) {
@@ -211,6 +212,8 @@ void LiveMotion::add_to_panel(const std::string& selected) {
     ImGui::Text("%.2f x real time", now.speed);
   else
     ImGui::TextUnformatted("plays");
+  for (const std::string* text : {&now.failure, &now.refusal, &now.report})
+    if (!text->empty()) ImGui::TextWrapped("%s", text->c_str());
   if (ImGui::Checkbox("as fast as possible", &fast_))
     run_.set_max_speed(fast_ ? std::numeric_limits<double>::infinity() : 1);
   ImGui::PushItemWidth(kSliderWidth);
@@ -222,6 +225,7 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   }
   add_rest_values(selected);
   add_parameter_stiffnesses(selected);
+  add_local_stiffnesses(selected);
   add_stiffnesses(selected);
   ImGui::PopItemWidth();
   ImGui::TextUnformatted("forces of");
@@ -236,8 +240,6 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   ImGui::Text("energy %.4g J", ledger.energy());
   ImGui::Text("work of anchors %.4g J", ledger.work[static_cast<int>(Work::anchors)]);
   ImGui::Text("balance %.2g J", ledger.balance);
-  if (!now.failure.empty()) ImGui::TextWrapped("%s", now.failure.c_str());
-  if (!now.refusal.empty()) ImGui::TextWrapped("%s", now.refusal.c_str());
 }
 
 /// Adds a slider for each rest value of a part: of a positive parameter from 0.3 to 2 times its first value,
@@ -257,8 +259,8 @@ void LiveMotion::add_rest_values(const std::string& part) {
   }
 }
 
-/// Adds a slider for the stiffness of each parameter of a part, from a hundredth to 100 times its first
-/// value, but not below the smallest value that is allowed.
+/// Adds a slider for the stiffness of each parameter of a part, from a hundredth of its first value, or the
+/// smallest value that is allowed, to the largest one with stable steps.
 void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
   for (std::size_t i = 0; i < parameter_stiffnesses_.size(); ++i) {
     ParameterStiffness& stiffness = parameter_stiffnesses_[i];
@@ -267,17 +269,34 @@ void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
     auto value = static_cast<float>(stiffness.next);
     const auto first = static_cast<float>(stiffness.first);
     const float low = std::max(0.01f * first, static_cast<float>(stiffness.least));
-    if (!add_slider("stiffness of " + rest.parameter, value, low, 100 * first, "%.4g",
+    if (!add_slider("stiffness of " + rest.parameter, value, low, static_cast<float>(stiffness.most), "%.4g",
                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat))
       continue;
-    stiffness.next = std::max<double>(value, stiffness.least);  // the value may be rounded to below it
+    stiffness.next = std::clamp<double>(value, stiffness.least, stiffness.most);  // the value may be rounded
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_parameter_stiffness(i, wanted);
     });
   }
 }
 
-/// Adds a slider for the stiffness of each spring at a part, from 0.1 to 10 times its first value.
+/// Adds a slider for the factor of the local stiffness of a part, from 0.01 to the largest stable factor.
+void LiveMotion::add_local_stiffnesses(const std::string& part) {
+  for (std::size_t i = 0; i < local_stiffnesses_.size(); ++i) {
+    LocalStiffness& stiffness = local_stiffnesses_[i];
+    if (stiffness.part->name() != part) continue;
+    auto value = static_cast<float>(stiffness.next);
+    if (!add_slider("local stiffness", value, 0.01f, static_cast<float>(stiffness.most), "%.3g x",
+                    ImGuiSliderFlags_Logarithmic))
+      continue;
+    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
+    run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
+      simulation.set_local_stiffness(i, wanted);
+    });
+  }
+}
+
+/// Adds a slider for the stiffness of each spring at a part, from a tenth of its first value to the largest
+/// one with stable steps.
 void LiveMotion::add_stiffnesses(const std::string& part) {
   const auto is_at = [&](const Point& end) { return end.part != nullptr && end.part->name() == part; };
   for (std::size_t i = 0; i < stiffnesses_.size(); ++i) {
@@ -286,7 +305,7 @@ void LiveMotion::add_stiffnesses(const std::string& part) {
     if (!is_at(spring.a) && !is_at(spring.b)) continue;
     auto value = static_cast<float>(stiffness.next);
     const auto first = static_cast<float>(stiffness.first);
-    if (!add_slider(spring.name + " (N/m)", value, 0.1f * first, 10 * first, "%.4g",
+    if (!add_slider(spring.name + " (N/m)", value, 0.1f * first, static_cast<float>(stiffness.most), "%.4g",
                     ImGuiSliderFlags_Logarithmic))
       continue;
     stiffness.next = value;

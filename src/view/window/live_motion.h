@@ -42,6 +42,7 @@ class LiveMotion final : public Motion {
   void add_rest_values(const std::string& part);
   void add_stiffnesses(const std::string& part);
   void add_parameter_stiffnesses(const std::string& part);
+  void add_local_stiffnesses(const std::string& part);
 
   Scene* scene_;
   ViewOptions options_;
@@ -49,6 +50,7 @@ class LiveMotion final : public Motion {
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
   std::vector<ParameterStiffness> parameter_stiffnesses_;
+  std::vector<LocalStiffness> local_stiffnesses_;
   Model model_;  // of the picture; the simulation has its own, which changes with every drag
   SurfacePoints points_;
   StatePicture shown_;

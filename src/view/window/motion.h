@@ -39,7 +39,8 @@ class Motion {
   virtual std::optional<std::string> grab(const Hit& hit) = 0;
   virtual void drag_to(const Vec3<double>& position) = 0;
   virtual void release() = 0;
-  /// Writes the scene with the actions of the user. Returns a text for the user.
+  /// Writes the scene with the actions of the user. Returns a text for the user; empty if the panel shows it
+  /// later.
   virtual std::string save() = 0;
 
   /// Adds the controls and values of this kind of motion to the panel of the window. selected: the name of

@@ -19,6 +19,7 @@ void Viewer::add_panel() {
   constexpr float kWidth = 255, kMargin = 10;
   ImGui::SetNextWindowPos({kMargin, kMargin}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({kWidth, 0});
+  ImGui::SetNextWindowSizeConstraints({kWidth, 0}, {kWidth, static_cast<float>(height_) - 2 * kMargin});
   ImGui::SetNextWindowBgAlpha(0.8f);
   ImGui::Begin("pliant", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize);
   if (ImGui::Button(motion_.plays() ? "pause" : "play ")) motion_.play(!motion_.plays());

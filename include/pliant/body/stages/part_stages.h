@@ -8,12 +8,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/stages/evaluation.h>
+#include <pliant/body/step_failure.h>
 #include <pliant/local/solid/inverted_element.h>
 #include <pliant/math/rotation.h>
 
@@ -52,13 +56,29 @@ std::optional<MovingFrame> place_frame(const PartModel& m, double t, const VecX<
   return prescribed;
 }
 
-/// Evaluates d and d_dot of a part that deforms locally, Eq. (5).
+/// Sets the factor of the laws of the local deformation of the named part. Throws NumericalFailure if the
+/// factor is negative or not a number.
+inline void set_law_factor(const std::string& name, double t, const Taylor2<double>& factor,
+                           LocalWorkspace& work) {
+  if (!(factor.v >= 0) || !std::isfinite(factor.v)) {
+    std::ostringstream message;
+    message << "the factor of the local stiffness of part '" << name << "' is " << factor.v
+            << "; expected a number of at least 0";
+    throw NumericalFailure(message.str(), t);
+  }
+  work.law_factor = factor.v;
+  work.law_factor_rate = factor.d;
+}
+
+/// Evaluates d and d_dot of a part that deforms locally, Eq. (5), at time t (s).
 template <class S>
-void place_local(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorkspace<S>& w) {
+void place_local(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v, PartWorkspace<S>& w) {
   if constexpr (std::is_same_v<S, double>) {
     if (m.local == nullptr) return;
     if (!w.local) w.local = m.local->workspace();
     w.local->place(q.data() + m.q0 + 7 + m.n_s, v.data() + m.v0 + 6 + m.n_s, m.n_d());
+    if (const TimeFunction* factor = m.part->local_factor(); factor != nullptr)
+      set_law_factor(m.part->name(), t, factor->at(t), *w.local);
     m.local->positions(*m.part, w.q_s, w.v_r, *w.local, w.counters);
   }
 }
@@ -125,7 +145,7 @@ template <class S>
 void evaluate_positions(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v,
                         PartWorkspace<S>& w) {
   const std::optional<MovingFrame> prescribed = place_frame<S>(m, t, q, v, w);
-  place_local<S>(m, q, v, w);
+  place_local<S>(m, t, q, v, w);
   if (m.ports.empty()) return;
   evaluate_ports<S>(m, w);
   place_ports<S>(m, prescribed, w);
@@ -235,6 +255,7 @@ void evaluate_own_forces(const PartModel& m, const Vec3<double>& gravity, double
       m.local->forces(w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
       w.power[static_cast<int>(Work::damping)] += w.local->damping;
       w.power[static_cast<int>(Work::drag)] += w.local->drag;
+      w.power[static_cast<int>(Work::actuation)] += w.local->actuation;
       return;
     }
   w.f = w.inertia.g_q;  // Eq. (11): g_q enters the equation of motion here

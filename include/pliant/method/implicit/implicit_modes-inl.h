@@ -5,11 +5,11 @@
 #include <pliant/method/implicit/implicit_modes.h>
 
 #include <pliant/math/header_only.h>
+#include <pliant/part/local/modal_deformation.h>
 
 namespace pliant {
 
-PLIANT_INLINE ImplicitModes::ImplicitModes(const PartModel& part)
-    : ImplicitPart(part), oscillators_(part.local->oscillators()) {
+PLIANT_INLINE ImplicitModes::ImplicitModes(const PartModel& part) : ImplicitPart(part) {
   const Eigen::Index n = part.local->n_d();
   P_.resize(3 * static_cast<Eigen::Index>(part.joint_points.size()), n);
   VecX<double> buffer;
@@ -21,7 +21,8 @@ PLIANT_INLINE ImplicitModes::ImplicitModes(const PartModel& part)
 
 PLIANT_INLINE int ImplicitModes::prepare(const PartWorkspace<double>& w, double c, double) {
   c_ = c;
-  sigma_ = 1 + c * oscillators_->damping.array() + c * c * oscillators_->omega2.array();
+  oscillators_ = part_->local->modal()->oscillators_at(w.local->law_factor);
+  sigma_ = 1 + c * oscillators_.damping.array() + c * c * oscillators_.omega2.array();
   const Part& part = *part_->part;
   const Eigen::Index n_s = part_->n_s;
   MatX<double> S_r = w.local->H0;
@@ -39,7 +40,7 @@ PLIANT_INLINE void ImplicitModes::filter(const VecX<double>& q_dot, const Mat3<d
   const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n);
   auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n);
   const VecX<double> x =
-      -c_ * (oscillators_->omega2.cwiseProduct(r_q + c_ * k_v) + oscillators_->damping.cwiseProduct(k_v))
+      -c_ * (oscillators_.omega2.cwiseProduct(r_q + c_ * k_v) + oscillators_.damping.cwiseProduct(k_v))
                 .cwiseQuotient(sigma_);
   k_v += x;
   change_.tail(P_.rows()) = P_ * x;

@@ -24,8 +24,8 @@ class ImplicitModes final : public ImplicitPart {
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const override;
 
  private:
-  const Oscillators* oscillators_;
-  MatX<double> P_;  ///< one column for each mode: displacements of the attachment points of joints
+  Oscillators oscillators_;  ///< at the factor of the laws of the last prepare()
+  MatX<double> P_;           ///< one column for each mode: displacements of the attachment points of joints
   double c_ = 0;
   VecX<double> sigma_;        ///< 1 + c D + c^2 omega^2
   MatX<double> D_s_;          ///< damping of the global parameters

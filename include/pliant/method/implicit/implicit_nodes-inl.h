@@ -149,11 +149,12 @@ PLIANT_INLINE int ImplicitNodes::factor_definite(double factor, double t) {
 
 PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
   const NodalWorkspace& nodal = NodalDeformation::of(*w.local);
-  const bool refactor = stiffness_changes_ || c != c_;
+  const bool refactor = stiffness_changes_ || c != c_ || nodal.law_factor != law_factor_;
   int factorisations = 0;
   if (refactor || frame_in_border()) {
     c_ = 0;  // in case the factorisation fails
     const std::string name = "the stiffness of the nodes of part '" + part_->part->name() + "'";
+    law_factor_ = nodal.law_factor;
     try {
       if (refactor) factorisations = factor(c, nodal.x, t);
       make_border(nodal, c);
@@ -177,15 +178,15 @@ PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double 
   if (K_.size() == 0) make_pattern();
   const double beta = local().beta();
   S_ = K_;
-  S_.coeffs() *= c * (beta + c);
+  S_.coeffs() *= law_factor_ * c * (beta + c);
   if (stiffness_changes_) {
     const auto add = [&](implicit_nodes::Matrix matrix, double factor) {
       implicit_nodes::for_each_entry(
           local(), implicit_nodes::Of::position, matrix, x, entries_,
           [&](int i, int j, double value) { S_.coeffRef(i, j) += factor * value; });
     };
-    add(&NodalEnergy::add_stiffness, c * c);
-    if (beta > 0) add(&NodalEnergy::add_viscosity, c * beta);
+    add(&NodalEnergy::add_stiffness, law_factor_ * c * c);
+    if (beta > 0) add(&NodalEnergy::add_viscosity, law_factor_ * c * beta);
   }
   if (!S_.isCompressed()) S_.makeCompressed();
   if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
@@ -223,7 +224,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
       B_.col(6 + k).segment(r * n, n) = m.cwiseProduct(w.J.col(k).segment(r * n, n));
   if (stiffness_changes_) add_frame_columns(w, c);
   for (Eigen::Index k = 0; k < n_dense; ++k)
-    B_.rightCols(n_dense).col(k) = c * dense[static_cast<std::size_t>(k)];
+    B_.rightCols(n_dense).col(k) = c * std::sqrt(law_factor_) * dense[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
   if (stiffness_changes_)
@@ -248,8 +249,9 @@ PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, dou
   for (Eigen::Index k = 0; k < n_s; ++k) {
     VecX<double> J = VecX<double>::Zero(n_d);
     J.head(3 * n) = w.J.col(k);
-    VecX<double> Q = c * c * implicit_nodes::stiffness_along(local(), w.x, J);
-    if (local().beta() > 0) Q += c * local().beta() * implicit_nodes::viscosity_along(local(), w.x, J);
+    VecX<double> Q = law_factor_ * c * c * implicit_nodes::stiffness_along(local(), w.x, J);
+    if (local().beta() > 0)
+      Q += law_factor_ * c * local().beta() * implicit_nodes::viscosity_along(local(), w.x, J);
     J_Q_.col(k) = w.J.transpose() * Q.head(3 * n);
     B_.col(n_r() + 6 + k) = Q;
   }
@@ -318,7 +320,7 @@ PLIANT_INLINE VecX<double> ImplicitNodes::damping_excess(const VecX<double>& r_q
   const double beta = local().beta(), s = 1 / (beta + c_);
   VecX<double> rate = r_q;
   if (J_.cols() > 0) rate.head(J_.rows()) += J_ * r_q_s;
-  return c_ * beta * s *
+  return law_factor_ * c_ * beta * s *
          (implicit_nodes::viscosity_along(local(), x_, rate) -
           implicit_nodes::stiffness_along(local(), x_, rate));
 }

@@ -78,6 +78,7 @@ class ImplicitNodes final : public ImplicitPart {
   VecX<double> zeros_;         ///< n_d zeros
   NodalWorkspace rest_;        ///< the part at rest
   bool stiffness_changes_;     ///< whether an energy depends on positions
+  double law_factor_ = 1;      ///< factor of the laws, LocalWorkspace::law_factor
   double c_ = 0;               ///< c of the current factor, s; 0 without a factor
   Eigen::Index analysed_ = 0;  ///< number of entries of the analysed pattern
   std::vector<Eigen::Triplet<double>> entries_;

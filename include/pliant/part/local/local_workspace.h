@@ -28,6 +28,8 @@ struct LocalWorkspace {
 
   // Input: the local coordinates and their rates. The maps refer to q and v of the evaluation.
   Eigen::Map<const VecX<double>> d{nullptr, 0}, d_dot{nullptr, 0};
+  // Input: the factor of the laws (PartDescription::scale_local) and its rate, 1/s.
+  double law_factor = 1, law_factor_rate = 0;
 
   // Stage masses().
   MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
@@ -38,6 +40,7 @@ struct LocalWorkspace {
 
   // Stage forces().
   double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W, at most 0
+  double actuation = 0;          ///< power of the change of the factor, W
   VecX<double> force;            ///< forces on the local coordinates
 
   // Stage accelerations().

@@ -38,8 +38,7 @@ PLIANT_INLINE ModalDeformation::ModalDeformation(const Part& part, const LocalSe
                                                  ModalBasis basis)
     : LocalDeformation(settings.alpha, settings.beta), basis_(std::move(basis)) {
   mesh_ = std::move(basis_.mesh);
-  oscillators_.omega2 = basis_.omega2;
-  oscillators_.damping = settings.alpha + settings.beta * basis_.omega2.array();
+  oscillators_ = oscillators_at(1);
   if (part.n_s() > 0) packs_ = packs_of(basis_.points);
   // The modes get the components of an initial field along the modes. The frame and the parameters get a
   // least-squares fit of the field.
@@ -206,14 +205,28 @@ PLIANT_INLINE void ModalDeformation::forces(const VecX<double>& v_r, const Vec3<
         axial(detail::spectral_outer(m, w.s(), of_d)) + axial(detail::spectral_outer(m, w.D, b));
     for (Eigen::Index k = 0; k < n_s; ++k) w.f_r[6 + k] -= detail::spectral_outer(m, w.J(k), of_d).trace();
   }
-  w.f_d = -(oscillators_.omega2.cwiseProduct(w.d) + oscillators_.damping.cwiseProduct(w.d_dot));
-  w.damping = -w.d_dot.dot(oscillators_.damping.cwiseProduct(w.d_dot));
+  if (w.law_factor == 1)
+    set_oscillator_forces(oscillators_, w);
+  else
+    set_oscillator_forces(oscillators_at(w.law_factor), w);
+  w.actuation =
+      w.law_factor_rate != 0 ? 0.5 * w.law_factor_rate * w.d.dot(basis_.omega2.cwiseProduct(w.d)) : 0;
   w.drag = 0;
   if (nu == 0) return;
   const VecX<double> on_frame = w.M_rr * v_r + w.C * w.d_dot, on_modes = w.C.transpose() * v_r + w.d_dot;
   w.f_r -= nu * on_frame;
   w.f_d -= nu * on_modes;
   w.drag = -nu * (on_frame.dot(v_r) + on_modes.dot(w.d_dot));
+}
+
+PLIANT_INLINE void ModalDeformation::set_oscillator_forces(const Oscillators& oscillators,
+                                                           ModalWorkspace& w) {
+  w.f_d = -(oscillators.omega2.cwiseProduct(w.d) + oscillators.damping.cwiseProduct(w.d_dot));
+  w.damping = -w.d_dot.dot(oscillators.damping.cwiseProduct(w.d_dot));
+}
+
+PLIANT_INLINE Oscillators ModalDeformation::oscillators_at(double factor) const {
+  return {factor * basis_.omega2, (alpha() + factor * beta() * basis_.omega2.array()).matrix()};
 }
 
 PLIANT_INLINE void ModalDeformation::push(const NodeWeights& at, const Vec3<double>& force,
@@ -290,15 +303,15 @@ PLIANT_INLINE LocalMotion ModalDeformation::motion(const VecX<double>& v_r,
   const VecX<double> momentum = w.M_rr * v_r + w.C * w.d_dot;
   LocalMotion all;
   all.kinetic = 0.5 * (v_r.dot(momentum + w.C * w.d_dot) + w.d_dot.squaredNorm());
-  all.elastic = 0.5 * w.d.dot(oscillators_.omega2.cwiseProduct(w.d));
+  all.elastic = 0.5 * w.law_factor * w.d.dot(basis_.omega2.cwiseProduct(w.d));
   all.momentum = momentum.head<3>();
   all.angular_momentum = momentum.segment<3>(3);
   all.moment = w.moment;
   return all;
 }
 
-PLIANT_INLINE LocalDeformation::Bound ModalDeformation::stiffness_bound(const LocalWorkspace&) const {
-  const double highest = oscillators_.omega2.maxCoeff();
+PLIANT_INLINE LocalDeformation::Bound ModalDeformation::stiffness_bound(const LocalWorkspace& work) const {
+  const double highest = work.law_factor * basis_.omega2.maxCoeff();
   return {highest, beta() * highest};
 }
 

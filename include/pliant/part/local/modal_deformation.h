@@ -68,6 +68,8 @@ class ModalDeformation final : public LocalDeformation {
   Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const override;
   const ModalDeformation* modal() const override { return this; }
   const Oscillators* oscillators() const override { return &oscillators_; }
+  /// Returns the oscillators with a factor of the laws (PartDescription::scale_local).
+  Oscillators oscillators_at(double factor) const;
 
   std::unique_ptr<LocalWorkspace> workspace() const override;
   void positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, LocalWorkspace& work,
@@ -90,6 +92,8 @@ class ModalDeformation final : public LocalDeformation {
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes, const LocalWorkspace& work) const;
 
  private:
+  /// Computes f_d of the workspace and the power of the damping by these oscillators.
+  static void set_oscillator_forces(const Oscillators& oscillators, ModalWorkspace& w);
   MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                    LocalWorkspace& work) const override;
   void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,

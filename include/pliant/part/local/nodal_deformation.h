@@ -155,6 +155,10 @@ class NodalDeformation final : public LocalDeformation {
   void linear_positions(const VecX<double>& q_s, const VecMax<double>& q_s_dot, NodalWorkspace& w) const;
   /// Computes f and f_d of the workspace: the elastic forces and their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
+  /// Multiplies f, f_d and the power of the damping by the factor of the laws.
+  void scale_elasticity(NodalWorkspace& w) const;
+  /// Returns the energy of the laws without their factor, J.
+  double elastic_energy(const NodalWorkspace& w) const;
   /// Adds beta times the viscous forces of the energies to f and f_d.
   void add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const;
 

@@ -80,10 +80,25 @@ PLIANT_INLINE void NodalDeformation::add_elasticity(NodalWorkspace& w, ThreadPoo
   }
   w.damping = 0;
   if (beta() > 0) add_viscous_forces(w, pool);
+  if (w.law_factor != 1) scale_elasticity(w);
+  w.actuation = w.law_factor_rate != 0 ? w.law_factor_rate * elastic_energy(w) : 0;
   if (alpha() > 0) {
     w.damping -= alpha() * w.d_dot.dot(inertia_.cwiseProduct(w.d_dot));
     w.f_d -= alpha() * inertia_.cwiseProduct(w.d_dot);
   }
+}
+
+PLIANT_INLINE void NodalDeformation::scale_elasticity(NodalWorkspace& w) const {
+  w.f_d *= w.law_factor;
+  if (of_positions_) w.f *= w.law_factor;
+  w.damping *= w.law_factor;
+}
+
+PLIANT_INLINE double NodalDeformation::elastic_energy(const NodalWorkspace& w) const {
+  double sum = 0;
+  for (const auto& energy : energies_)
+    sum += energy->of() == NodalEnergy::Of::displacement ? energy->energy(w.d) : energy->energy(w.x);
+  return sum;
 }
 
 PLIANT_INLINE void NodalDeformation::add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const {

@@ -111,8 +111,7 @@ PLIANT_INLINE LocalMotion NodalDeformation::motion(const VecX<double>& v_r,
   const Eigen::Index own = n_d() - 3 * n;
   LocalMotion all{0.5 * sum(twice), 0, P.total(), L.total(), moment.total()};
   all.kinetic += 0.5 * w.d_dot.tail(own).dot(inertia_.tail(own).cwiseProduct(w.d_dot.tail(own)));
-  for (const auto& energy : energies_)
-    all.elastic += energy->of() == NodalEnergy::Of::displacement ? energy->energy(w.d) : energy->energy(w.x);
+  all.elastic = w.law_factor * elastic_energy(w);
   return all;
 }
 
@@ -120,7 +119,7 @@ PLIANT_INLINE LocalDeformation::Bound NodalDeformation::stiffness_bound(const Lo
   Bound bound;
   for (const auto& energy : energies_) {
     const bool of_d = energy->of() == NodalEnergy::Of::displacement;
-    const double omega2 = energy->frequency_bound(of_d ? work.d : of(work).x, inertia_);
+    const double omega2 = work.law_factor * energy->frequency_bound(of_d ? work.d : of(work).x, inertia_);
     bound.K += omega2;
     bound.D += beta() * omega2;
   }

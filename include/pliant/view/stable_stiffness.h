@@ -1,0 +1,36 @@
+// Bounds of the stiffness of springs and parameters with which fixed explicit steps remain stable.
+#pragma once
+
+#include <pliant/simulate/simulation.h>
+
+namespace pliant {
+
+/// Returns the largest change of the velocity of a point of a moving part along a unit impulse, over all
+/// directions: the inverse of the effective mass, 1/kg. The part is without its joints. The point may have a
+/// patch of nodes.
+double inverse_mass(const Simulation& simulation, const Point& point);
+/// Returns the change of the rate of dynamic parameter number k of a part by a unit impulse, without joints:
+/// 1/kg for a length, else 1/(kg m^2).
+double inverse_mass(const Simulation& simulation, const Part& part, int k);
+
+/// Constants of a spring and damper, N/m and N s/m.
+struct SpringConstants {
+  double stiffness, damping;
+};
+
+class StableStiffness {
+ public:
+  /// simulation: at its start. step: fixed step, s; 0 if steps adapt to a tolerance: nothing is then bounded.
+  StableStiffness(const Simulation& simulation, double step);
+
+  /// Returns the largest constants, at most the wanted ones, with which the steps remain stable. The damping
+  /// is at most half of the largest stable one, and the stiffness is then as large as possible. inverse_mass:
+  /// of the masses on which the spring acts, 1/kg.
+  SpringConstants bounded(const Integrator& method, const SpringConstants& wanted, double inverse_mass) const;
+
+ private:
+  double step_;
+  double present_ = 0;  // K of the fastest motion of the scene itself, 1/s^2
+};
+
+}  // namespace pliant
