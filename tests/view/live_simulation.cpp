@@ -387,6 +387,23 @@ TEST_CASE("a reset simulation has the first stiffnesses of parameters, and can c
   CHECK(saved_scene(live, ".", ".") == saved_scene(other, ".", "."));
 }
 
+TEST_CASE("a reset simulation has the first local stiffness, and can change it again") {
+  const std::string text = jelly_scene(R"({"step": 0.002, "integrator": "rk4"})");
+  const std::unique_ptr<Scene> scene = parse(text), fresh = parse(text);
+  LiveSimulation live(*scene), other(*fresh);
+  live.set_local_stiffness(0, 0.3);
+  for (int k = 0; k < 10; ++k) live.advance();
+  live.reset();
+  for (LiveSimulation* each : {&live, &other})
+    for (int k = 0; k < 50; ++k) {
+      if (k == 30) each->set_local_stiffness(0, 0.5);
+      drag(*each, "jelly", k);
+      each->advance();
+    }
+  CHECK(same_bits(live.simulation().state().q, other.simulation().state().q));
+  CHECK(saved_scene(live, ".", ".") == saved_scene(other, ".", "."));
+}
+
 TEST_CASE("a changed stiffness of a sleeping part is repeated to the last bit", "[long]") {
   check_replay(R"({"time": {"tolerance": 1e-6},
     "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": {"rest": 0.1, "stiffness": 20000}},

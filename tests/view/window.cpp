@@ -131,6 +131,20 @@ TEST_CASE("a scripted drag moves the point of a part by what the library gives f
   CHECK((report.held - Vec3<double>(1.5, 0, 0.5)).norm() > 0.3);
 }
 
+TEST_CASE("a dragged point answers within two pictures of a movement of the mouse", "[long]") {
+  if (no_display()) return;
+  const NewFolder folder;
+  set_bytes(folder / "scene.json", kScene);
+  set_bytes(folder / "script.txt",
+            "over egg\npress left\nkey space\npictures 30\nreport\nmove 700 200\npictures 2\nreport\n");
+  const std::string printed = on_display(folder, viewer("scene.json --script script.txt"));
+  const Report after = last_report(printed), before = last_report(printed.substr(0, printed.rfind("time ")));
+  const Vec3<double> way = after.target - before.target;
+  CAPTURE(before.held, after.held, before.target, after.target);
+  REQUIRE(way.norm() > 0.1);
+  CHECK((after.held - before.held).dot(way.normalized()) > 1e-4);
+}
+
 TEST_CASE("the mouse of the display drags a part, and the wheel and the right button move the camera",
           "[long]") {
   if (no_display()) return;
