@@ -26,15 +26,20 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
 /// Indices of the tables of checked_contact_tables().
 enum : std::size_t { kContacts, kImpulses };
 
+/// Throws RecordingMismatch if the table has another number of columns.
+void require_columns(const NpyReader& table, const std::vector<Column>& columns) {
+  if (table.columns() != static_cast<int>(columns.size()))
+    throw RecordingMismatch(table.path().string() + " has " + std::to_string(table.columns()) +
+                            " columns, expected " + std::to_string(columns.size()));
+}
+
 /// Writes the table `from` as the CSV file `to`. The first column is the time. The next `names` columns are
 /// indices into names_of and become names. Throws RecordingMismatch if the table does not fit.
 void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<Column>& columns, const std::vector<std::string>& names_of,
                  std::size_t names) {
   const NpyReader table(from);
-  if (table.columns() != static_cast<int>(columns.size()))
-    throw RecordingMismatch(from.string() + " has " + std::to_string(table.columns()) +
-                            " columns, expected " + std::to_string(columns.size()));
+  require_columns(table, columns);
   WholeFile file(to);
   std::string text;
   for (const Column& column : columns) text += (text.empty() ? "" : ",") + column.name;
@@ -195,6 +200,37 @@ void ContactRecordingWriter::append_joints(const Simulation& simulation, const C
 void ContactRecordingWriter::flush(bool to_disk) {
   for (NpyWriter* table : {&contacts_, &impulses_}) to_disk ? table->flush_to_disk() : table->flush();
   to_disk ? checksums_.flush_to_disk() : checksums_.flush();
+}
+
+std::optional<RecordedContacts> RecordedContacts::open(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / kContactsFile)) return {};
+  NpyReader table(folder / kContactsFile);
+  require_columns(table, contact_columns());
+  return RecordedContacts(std::move(table));
+}
+
+std::vector<RecordedContacts::Force> RecordedContacts::at(double time) const {
+  const std::vector<Column> columns = contact_columns();
+  const auto column = [&](const char* name) {
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    return found - columns.begin();
+  };
+  const auto point = column("point.x"), force = column("force.x");
+  std::vector<double> row(columns.size());
+  std::int64_t low = 0, high = table_.rows();  // the first row of this time is in [low, high]
+  while (low < high) {
+    const std::int64_t middle = low + (high - low) / 2;
+    table_.read(middle, row.data());
+    (row[0] < time ? low : high) = row[0] < time ? middle + 1 : middle;
+  }
+  std::vector<Force> forces;
+  for (; low < table_.rows(); ++low) {
+    table_.read(low, row.data());
+    if (row[0] != time) break;
+    forces.push_back({Vec3<double>(row.data() + point), Vec3<double>(row.data() + force)});
+  }
+  return forces;
 }
 
 void write_contact_tables(const std::filesystem::path& folder, const Model& model) {

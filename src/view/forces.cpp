@@ -15,29 +15,27 @@ std::vector<ForceArrow> contact_forces(const Simulation& simulation) {
   return arrows;
 }
 
-std::vector<ForceArrow> joint_forces(const Simulation& simulation) {
+std::vector<ForceArrow> joint_forces(const Dynamics& dynamics, const State& state) {
   std::vector<ForceArrow> arrows;
-  const Model& model = simulation.model();
+  const Model& model = dynamics.model();
   if (model.joints().empty()) return arrows;
-  const State& state = simulation.state();
   Workspace<double> work;
-  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
+  dynamics.accelerations(state.time(), state.q, state.v, state, work);
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     if (state.joints[j] == JointMode::off) continue;
     const Vec3<double> at = PlacedPoint(model, model.joints()[j].joint->points().front()).at(state);
-    arrows.push_back({at, simulation.dynamics().joint_wrench(state.time(), static_cast<int>(j), work).force});
+    arrows.push_back({at, dynamics.joint_wrench(state.time(), static_cast<int>(j), work).force});
   }
   return arrows;
 }
 
-std::vector<ForceArrow> load_forces(const Simulation& simulation) {
+std::vector<ForceArrow> load_forces(const Dynamics& dynamics, const State& state) {
   std::vector<ForceArrow> arrows;
-  const Model& model = simulation.model();
+  const Model& model = dynamics.model();
   if (model.loaded_parts().empty()) return arrows;
-  const State& state = simulation.state();
   Workspace<double> work;
-  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
-  const Evaluation<double> e{simulation.dynamics(), state.time(), state.q, state.v, work, &state};
+  dynamics.accelerations(state.time(), state.q, state.v, state, work);
+  const Evaluation<double> e{dynamics, state.time(), state.q, state.v, work, &state};
   for (const SpringModel& m : model.springs()) {
     if (!m.spring->acts_at(state.time())) continue;
     const auto a = detail::motion_of(e, m.a, m.spring->a), b = detail::motion_of(e, m.b, m.spring->b);

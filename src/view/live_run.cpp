@@ -242,9 +242,9 @@ void LiveRun::publish() {
   }
   if (failure_.empty()) {
     const Simulation& simulation = simulation_.simulation();
-    if (shown_.contacts) next->contacts = contact_forces(simulation);
-    if (shown_.joints) next->joints = joint_forces(simulation);
-    if (shown_.loads) next->loads = load_forces(simulation);
+    if (shown_.contacts) next->forces.contacts = contact_forces(simulation);
+    if (shown_.joints) next->forces.joints = joint_forces(simulation.dynamics(), simulation.state());
+    if (shown_.loads) next->forces.loads = load_forces(simulation.dynamics(), simulation.state());
   }
   next->failure = failure_;
   next->refusal = refusal_;

@@ -164,4 +164,26 @@ TEST_CASE("a resumed run records identical contacts", "[contact]") {
   }
 }
 
+TEST_CASE("the recorded contacts of a state are the rows of its time") {
+  const NewFolder folder;
+  const auto scene = falling_scene();
+  run(*scene, folder / "r");
+  const auto rows = table_of(folder / "r" / kContactsTable);
+  const std::optional<RecordedContacts> contacts = RecordedContacts::open(folder / "r");
+  REQUIRE(contacts);
+  std::map<double, std::vector<Vec3<double>>> forces;  // of each time, in the order of the table
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto number = [&](std::size_t k) { return std::strtod(rows[i][k].c_str(), nullptr); };
+    forces[number(0)].push_back({number(13), number(14), number(15)});
+  }
+  REQUIRE(forces.size() > 5);
+  for (const auto& [t, expected] : forces) {
+    const std::vector<RecordedContacts::Force> found = contacts->at(t);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) CHECK(found[k].force == expected[k]);
+  }
+  CHECK(contacts->at(1e9).empty());
+  CHECK_FALSE(RecordedContacts::open(folder.path));
+}
+
 }  // namespace contacts_test

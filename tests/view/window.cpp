@@ -145,6 +145,28 @@ TEST_CASE("a dragged point answers within two pictures of a movement of the mous
   CHECK((after.held - before.held).dot(way.normalized()) > 1e-4);
 }
 
+TEST_CASE("a recording plays, steps and returns to its start, and shows forces", "[long]") {
+  if (no_display()) return;
+  const NewFolder folder;
+  set_bytes(folder / "scene.json", kSpringScene);
+  REQUIRE(std::system(("cd '" + folder.path.string() + "' && '" + PLIANT_PROGRAM +
+                       "' run scene.json -o r --end 1 --fps 10 --quiet")
+                          .c_str()) == 0);
+  set_bytes(
+      folder / "script.txt",
+      "key s\nkey s\npictures 2\nreport\nphotograph plain.png\nkey f\npictures 2\nphotograph forces.png\n"
+      "key r\npictures 2\nreport\nkey space\nuntil 0.5\nreport\n");
+  const std::string printed = on_display(folder, viewer("r --script script.txt"));
+  std::vector<double> times;
+  for (std::size_t at = printed.find("time "); at != std::string::npos; at = printed.find("time ", at + 1))
+    times.push_back(std::strtod(printed.c_str() + at + 5, nullptr));
+  REQUIRE(times.size() == 3);
+  CHECK(times[0] == Approx(0.2));
+  CHECK(times[1] == 0);
+  CHECK(times[2] >= 0.5);
+  CHECK(bytes_of(folder / "plain.png") != bytes_of(folder / "forces.png"));
+}
+
 TEST_CASE("the mouse of the display drags a part, and the wheel and the right button move the camera",
           "[long]") {
   if (no_display()) return;

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <pliant/contact/contact_resolution.h>
@@ -49,6 +51,25 @@ class ContactRecordingWriter {
   NpyWriter contacts_, impulses_;
   ChecksumWriter checksums_;
   Workspace<double> work_;
+};
+
+/// The contacts of a recording.
+class RecordedContacts {
+ public:
+  struct Force {
+    Vec3<double> at, force;  ///< contact point, m, and mean force on the first part, N; world
+  };
+
+  /// Opens the contacts of the run in a folder; nullopt if contacts were not recorded. Throws
+  /// std::system_error, RecordingMismatch.
+  static std::optional<RecordedContacts> open(const std::filesystem::path& folder);
+  /// Returns the forces of the contacts of the last step before the recorded state at a time, s.
+  std::vector<Force> at(double time) const;
+
+ private:
+  explicit RecordedContacts(NpyReader table) : table_(std::move(table)) {}
+
+  NpyReader table_;
 };
 
 /// Opens the checksums of both tables, contact_checksums.npy. Throws std::system_error, RecordingMismatch.

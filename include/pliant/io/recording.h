@@ -73,6 +73,8 @@ class Recording {
   /// Returns the checksums of all tables after the first `states` states.
   Checksums checksums(std::int64_t states) const { return checksums_.checksums(states); }
 
+  /// Returns the folder of the tables.
+  std::filesystem::path folder() const { return coordinates_.path().parent_path(); }
   std::int64_t rows() const { return static_cast<std::int64_t>(times_.size()); }
   double time(std::int64_t row) const { return times_[static_cast<std::size_t>(row)]; }
   /// Returns a recorded state, exact to the last bit. Throws RecordingMismatch if its check number does not

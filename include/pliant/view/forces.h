@@ -1,4 +1,4 @@
-// The forces of a simulation as arrows.
+// The forces of a simulation, or at a state, as arrows.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,22 @@ struct ForceArrow {
   Vec3<double> force;  ///< N
 };
 
+/// The forces of each kind.
+struct ForceArrows {
+  std::vector<ForceArrow> contacts, joints, loads;
+};
+
+/// Which kinds of forces are shown.
+struct ShownForces {
+  bool contacts = false, joints = false, loads = false;
+  bool any() const { return contacts || joints || loads; }
+};
+
 /// Returns the mean forces of the contacts of the last step, on their sides a.
 std::vector<ForceArrow> contact_forces(const Simulation& simulation);
 /// Returns the forces of the joints at the state, on their first parts, at the first points of the joints.
-std::vector<ForceArrow> joint_forces(const Simulation& simulation);
+std::vector<ForceArrow> joint_forces(const Dynamics& dynamics, const State& state);
 /// Returns the forces of springs, on the parts at their ends, and the forces at points.
-std::vector<ForceArrow> load_forces(const Simulation& simulation);
+std::vector<ForceArrow> load_forces(const Dynamics& dynamics, const State& state);
 
 }  // namespace pliant

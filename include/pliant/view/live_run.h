@@ -15,11 +15,6 @@
 
 namespace pliant {
 
-/// Which forces a snapshot has.
-struct ShownForces {
-  bool contacts = false, joints = false, loads = false;
-};
-
 /// What the window shows of a running simulation.
 struct Snapshot {
   State state;
@@ -29,9 +24,9 @@ struct Snapshot {
   double delay = 0;          ///< wall time by which the simulation is late, s; 0 if paused or unlimited
   bool running = false;
   bool dragging = false;
-  Vec3<double> held = Vec3<double>::Zero();         ///< position of the dragged point, m
-  Vec3<double> target = Vec3<double>::Zero();       ///< position of the moving point of the world, m
-  std::vector<ForceArrow> contacts, joints, loads;  ///< forces of the kinds that are shown
+  Vec3<double> held = Vec3<double>::Zero();    ///< position of the dragged point, m
+  Vec3<double> target = Vec3<double>::Zero();  ///< position of the moving point of the world, m
+  ForceArrows forces;                          ///< of the kinds that are shown
   std::string failure;  ///< message of the step that failed; only a reset continues. Empty without a failure
   std::string refusal;  ///< message of the last command, if it failed
   std::string report;   ///< text of the last command of post_report()

@@ -18,13 +18,10 @@ namespace pliant {
 namespace {
 
 const Eigen::Vector3f kDragColor(0.85f, 0.15f, 0.1f);
-const Eigen::Vector3f kContactColor(0.1f, 0.55f, 0.2f), kJointColor(0.15f, 0.3f, 0.8f),
-    kLoadColor(0.75f, 0.45f, 0.05f);
-constexpr float kDragWidth = 2.5f, kTargetWidth = 8, kForceWidth = 2, kForceDotWidth = 5;  // pixels
-constexpr float kSliderWidth = 130;                                                        // pixels
+constexpr float kDragWidth = 2.5f, kTargetWidth = 8;  // pixels
+constexpr float kSliderWidth = 130;                   // pixels
 constexpr double kFarther = 1.5;           // distance of the automatic camera, in distances that show time 0
 constexpr double kTrackResolution = 1e-3;  // distance between two points of a track, in sizes of the scene
-constexpr double kLongestForce = 0.25;     // length of the line of the largest force, in sizes of the scene
 
 /// Returns the number of threads for the simulation: one processor is left to the window.
 int threads_of(Scene& scene, int asked) {
@@ -88,9 +85,7 @@ void LiveMotion::show_again() {
     shown_.set_scale(highest_);
   }
   for (const TrackLine& track : tracks_) shown_.picture().tracks.push_back(track.until(snapshot_->state));
-  add_forces(snapshot_->contacts, kContactColor);
-  add_forces(snapshot_->joints, kJointColor);
-  add_forces(snapshot_->loads, kLoadColor);
+  forces_.add(snapshot_->forces, size_, shown_.picture());
   add_drag_line();
 }
 
@@ -106,38 +101,12 @@ void LiveMotion::extend_tracks() {
   }
 }
 
-void LiveMotion::show_forces(const ShownForces& shown) {
-  forces_ = shown;
-  largest_force_ = 0;
-  run_.show_forces(shown);
-}
-
 void LiveMotion::add_drag_line() {
   if (!snapshot_->dragging) return;
-  add_line({snapshot_->held, snapshot_->target}, kDragColor, kDragWidth);
-  add_line({snapshot_->target}, kDragColor, kTargetWidth);
-  add_line({snapshot_->held}, kDragColor, kTargetWidth);
-}
-
-void LiveMotion::add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width) {
-  Picture::Track track;
-  track.points = std::move(points);
-  track.color = color;
-  track.width = width;
-  track.on_top = true;
-  shown_.picture().tracks.push_back(std::move(track));
-}
-
-/// Adds a line for each force, with a dot at its point. The largest force so far is a quarter of the scene
-/// long.
-void LiveMotion::add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color) {
-  for (const ForceArrow& arrow : arrows) largest_force_ = std::max(largest_force_, arrow.force.norm());
-  if (!(largest_force_ > 0)) return;
-  const double scale = kLongestForce * size_ / largest_force_;
-  for (const ForceArrow& arrow : arrows) {
-    add_line({arrow.at, arrow.at + scale * arrow.force}, color, kForceWidth);
-    add_line({arrow.at}, color, kForceDotWidth);
-  }
+  Picture& picture = shown_.picture();
+  add_line({snapshot_->held, snapshot_->target}, kDragColor, kDragWidth, picture);
+  add_line({snapshot_->target}, kDragColor, kTargetWidth, picture);
+  add_line({snapshot_->held}, kDragColor, kTargetWidth, picture);
 }
 
 void LiveMotion::play(bool on) {
@@ -169,8 +138,8 @@ void LiveMotion::color_by_strain(bool on) {
 }
 
 void LiveMotion::toggle_forces() {
-  const bool on = !(forces_.contacts || forces_.joints || forces_.loads);
-  show_forces({on, on, on});
+  forces_.toggle();
+  run_.show_forces(forces_.shown());
 }
 
 std::optional<std::string> LiveMotion::grab(const Hit& hit) {
@@ -228,13 +197,7 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   add_local_stiffnesses(selected);
   add_stiffnesses(selected);
   ImGui::PopItemWidth();
-  ImGui::TextUnformatted("forces of");
-  bool changed = ImGui::Checkbox("contacts", &forces_.contacts);
-  ImGui::SameLine();
-  changed = ImGui::Checkbox("joints", &forces_.joints) || changed;
-  ImGui::SameLine();
-  changed = ImGui::Checkbox("loads", &forces_.loads) || changed;
-  if (changed) show_forces(forces_);
+  if (forces_.add_to_panel()) run_.show_forces(forces_.shown());
   ImGui::Separator();
   const Ledger& ledger = now.ledger;
   ImGui::Text("energy %.4g J", ledger.energy());

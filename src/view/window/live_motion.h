@@ -7,6 +7,7 @@
 #include <pliant/view/live_run.h>
 #include <pliant/view/viewer.h>
 
+#include "force_lines.h"
 #include "motion.h"
 
 namespace pliant {
@@ -34,11 +35,8 @@ class LiveMotion final : public Motion {
   void report(std::ostream& out) const override;
 
  private:
-  void add_line(std::vector<Eigen::Vector3d> points, const Eigen::Vector3f& color, float width);
-  void show_forces(const ShownForces& shown);
   void add_drag_line();
   void extend_tracks();
-  void add_forces(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color);
   void add_rest_values(const std::string& part);
   void add_stiffnesses(const std::string& part);
   void add_parameter_stiffnesses(const std::string& part);
@@ -60,8 +58,8 @@ class LiveMotion final : public Motion {
   bool plays_ = false, fast_ = false, gravity_is_free_;
   Vec3<double> first_gravity_;            // m/s^2
   float drag_strength_ = 0, gravity_[3];  // logarithm to base 10 of the factor of the stiffness; m/s^2
-  ShownForces forces_;
-  double highest_ = 0, largest_force_ = 0, size_ = 1;  // of the strain so far; N; of the scene at time 0, m
+  ForceLines forces_;
+  double highest_ = 0, size_ = 1;  // of the strain so far; of the scene at time 0, m
 };
 
 }  // namespace pliant

@@ -12,10 +12,14 @@ RecordedMotion::RecordedMotion(Scene& scene, const Model& model, const Recording
       model_(&model),
       recording_(&recording),
       film_(std::make_unique<Film>(scene, model, recording)),
+      dynamics_(model),
+      contacts_(RecordedContacts::open(recording.folder())),
       first_(recording.time(0)),
       last_(recording.time(recording.rows() - 1)),
       time_(first_) {
   film_->at(time_);
+  const Eigen::AlignedBox3d bodies = film_->shown().bounds(recording.state(0));
+  if (!bodies.isEmpty()) size_ = bodies.diagonal().norm();
 }
 
 void RecordedMotion::show(double time) {
@@ -44,7 +48,30 @@ bool RecordedMotion::refresh() {
   if (!changed_) return false;
   changed_ = false;
   film_->at(time_);
+  if (forces_.shown().any()) add_forces();
   return true;
+}
+
+/// Adds the forces at the last recorded state, because the motion between two states is interpolated.
+void RecordedMotion::add_forces() {
+  std::int64_t row = 0, end = recording_->rows();
+  while (end - row > 1) {
+    const std::int64_t middle = row + (end - row) / 2;
+    (recording_->time(middle) <= time_ ? row : end) = middle;
+  }
+  const State state = recording_->state(row);
+  ForceArrows arrows;
+  if (forces_.shown().contacts && contacts_)
+    for (const RecordedContacts::Force& force : contacts_->at(recording_->time(row)))
+      arrows.contacts.push_back({force.at, force.force});
+  if (forces_.shown().joints) arrows.joints = joint_forces(dynamics_, state);
+  if (forces_.shown().loads) arrows.loads = load_forces(dynamics_, state);
+  forces_.add(arrows, size_, film_->shown().picture());
+}
+
+void RecordedMotion::toggle_forces() {
+  forces_.toggle();
+  changed_ = true;
 }
 
 void RecordedMotion::color_by_strain(bool on) {
@@ -73,6 +100,10 @@ void RecordedMotion::add_to_panel(const std::string&) {
   if (ImGui::SliderFloat("##time", &time, static_cast<float>(first_), static_cast<float>(last_),
                          "t = %.3f s"))
     show(time);
+  if (forces_.add_to_panel()) changed_ = true;
+  if (forces_.shown().contacts && !contacts_ && scene_->body.contact.active)
+    ImGui::TextWrapped(
+        "contacts are not recorded; \"output\": {\"contacts\": true} in the scene records them");
   ImGui::Text("%lld states, %.3f s", static_cast<long long>(recording_->rows()), last_ - first_);
 }
 

@@ -1,10 +1,12 @@
 // The recording of a window.
 #pragma once
 
+#include <pliant/io/contact_recording.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/render/film.h>
 #include <pliant/view/viewer.h>
 
+#include "force_lines.h"
 #include "motion.h"
 
 namespace pliant {
@@ -23,7 +25,7 @@ class RecordedMotion final : public Motion {
   void reset() override { show(first_); }
   void show_again() override { changed_ = true; }
   void color_by_strain(bool on) override;
-  void toggle_forces() override {}  // a recording has no contacts
+  void toggle_forces() override;
   std::optional<std::string> grab(const Hit& hit) override;
   void drag_to(const Vec3<double>&) override {}
   void release() override {}
@@ -33,11 +35,16 @@ class RecordedMotion final : public Motion {
 
  private:
   void show(double time);
+  void add_forces();
 
   Scene* scene_;
   const Model* model_;
   const Recording* recording_;
   std::unique_ptr<Film> film_;
+  Dynamics dynamics_;
+  std::optional<RecordedContacts> contacts_;  // not set if the run has not recorded them
+  ForceLines forces_;
+  double size_ = 1;             // of the scene at the start, m
   double first_, last_, time_;  // s
   bool plays_ = false, changed_ = true;
   WallClock::time_point advanced_ = WallClock::now();
