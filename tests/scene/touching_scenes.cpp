@@ -175,7 +175,7 @@ TEST_CASE("balloons swing, collide, deform and come to rest without deep overlap
   // Inelastic contact never books a gain beyond the error of the method.
   CAPTURE(contact_gain, error);
   CHECK(contact_gain <= error);
-  CHECK(error <= 0.05 * max_kinetic);
+  CHECK(error <= 0.1 * max_kinetic);  // of the first-order method
 }
 
 TEST_CASE("the springboard throws up the ball on its end, and all parts deform", "[contact][long]") {
