@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include <pliant/body/placed_point.h>
 
 namespace pliant {
@@ -18,6 +20,17 @@ void extend(LinearKeys& path, double value, double now, double next) {
   if (value == last) return;
   if (path.times().back() < now) path.append(now, last);
   path.append(next, value);
+}
+
+/// Returns the diagonal of the box of all parts, m, each with a radius of its size.
+double extent(const Simulation& simulation) {
+  Eigen::AlignedBox3d all;
+  for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
+    const Vec3<double> c = simulation.model().position(simulation.state(), static_cast<int>(i));
+    const Vec3<double> size = Vec3<double>::Constant(simulation.model().parts()[i].part->size());
+    all.extend(c - size).extend(c + size);
+  }
+  return all.diagonal().norm();
 }
 
 }  // namespace
@@ -93,7 +106,9 @@ void LiveSimulation::set_rest_value(std::size_t i, double value) {
 void LiveSimulation::extend_paths(double now, double next) {
   for (Drag& drag : drags_) {
     if (std::isfinite(drag.spring->off)) continue;
-    drag.path.append(next, drag.target);
+    const Vec3<double> last = drag.path.last(), way = drag.target - last;
+    const double length = way.norm();
+    drag.path.append(next, length <= drag.reach ? drag.target : last + drag.reach / length * way);
     if (drag.ends) drag.spring->off = next;
   }
   if (gravity_ && next_gravity_ != gravity_->last()) {
@@ -157,19 +172,21 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   Spring& spring =
       scene_->body.spring(new_name(), exact, world(path.function()), bounded.stiffness, bounded.damping);
   spring.on = now;
-  drags_.push_back({&spring, place, std::move(path), start});
+  const double speed = std::max(kMaxHandSpeed * point.part->size(), extent(*simulation_));
+  drags_.push_back({&spring, place, std::move(path), start, speed / rate_});
   wake(state, scene_->body.index(*point.part));
   continue_from(std::move(state));
 }
 
-/// Returns constants of a drag with which the fixed steps are stable. Enlarges the patch of nodes at the
-/// point, and with it the dragged mass, until they are the wanted ones or the patch is kLargestPatch sizes of
-/// the part large.
-SpringConstants LiveSimulation::bound_drag(const SpringConstants& wanted, Point& at) const {
+/// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the frame.
+/// Enlarges the patch of nodes at the point, and with it the dragged mass, until they are the wanted ones or
+/// the patch is kLargestPatch sizes of the part large.
+SpringConstants LiveSimulation::bound_drag(const SpringConstants& constants, Point& at) const {
   constexpr double kLargestPatch = 0.4;
+  const SpringConstants wanted = stable_->resolved(constants, inverse_mass(*simulation_, at));
   for (;;) {
     const SpringConstants bounded =
-        stable_->bounded(simulation_->integrator(), wanted, inverse_mass(*simulation_, at));
+        stable_->bounded(simulation_->integrator(), wanted, inverse_mass(*simulation_, at).total());
     const bool whole = bounded.stiffness == wanted.stiffness && bounded.damping == wanted.damping;
     if (whole || at.patch == 0 || at.patch >= kLargestPatch * at.part->size()) return bounded;
     at.patch *= 2;

@@ -66,7 +66,8 @@ void LiveSimulation::bound_stiffnesses() {
   for (SpringStiffness& stiffness : stiffnesses_) {
     double inverse_masses = 0;
     for (const Point* end : {&stiffness.spring->a, &stiffness.spring->b})
-      if (end->part != nullptr && !end->part->fixed()) inverse_masses += inverse_mass(*simulation_, *end);
+      if (end->part != nullptr && !end->part->fixed())
+        inverse_masses += inverse_mass(*simulation_, *end).total();
     stiffness.most = bounded(stiffness.first, most_of_springs, inverse_masses);
   }
   for (ParameterStiffness& stiffness : parameter_stiffnesses_) {

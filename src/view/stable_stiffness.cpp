@@ -19,6 +19,8 @@ constexpr double kMaxPresentShare = 0.75;
 constexpr double kStiffnessShare = 0.8;
 /// If a damping is reduced, it becomes this share of the largest stable one, so that the stiffness has room.
 constexpr double kDampingShare = 0.5;
+/// Steps of h resolve a motion with K h^2 and D h up to these numbers.
+constexpr double kResolvedStiffness = 0.25, kResolvedDamping = 0.5;
 /// Number of halvings of each search.
 constexpr int kHalvings = 60;
 
@@ -73,7 +75,7 @@ PlacedPart place(const Simulation& simulation, const Part& part) {
 
 }  // namespace
 
-double inverse_mass(const Simulation& simulation, const Point& point) {
+InverseMass inverse_mass(const Simulation& simulation, const Point& point) {
   const PlacedPart placed = place(simulation, *point.part);
   const PartWorkspace<double>& w = placed.part();
   std::vector<PointJet<double>> at;
@@ -82,9 +84,9 @@ double inverse_mass(const Simulation& simulation, const Point& point) {
   MatX<double> L(3, 6 + placed.model.n_s);  // Eq. (9): the velocity of the point is L v_r
   L << Mat3<double>::Identity(), -skew(at[0].p), at[0].J;
   const MatX<double> response = L * placed.inverse() * L.transpose();
-  double largest = symmetric_eigenvalues(response).maxCoeff();
-  if (placed.model.local != nullptr) largest += placed.model.local->mobility(Model::node_weights(point));
-  return largest;
+  const LocalDeformation* local = placed.model.local;
+  return {symmetric_eigenvalues(response).maxCoeff(),
+          local != nullptr ? local->mobility(Model::node_weights(point)) : 0};
 }
 
 double inverse_mass(const Simulation& simulation, const Part& part, int k) {
@@ -96,6 +98,13 @@ StableStiffness::StableStiffness(const Simulation& simulation, double step) : st
   const double largest = largest_stable(simulation.integrator(), step),
                ratio = step / stable_step(simulation).step;
   present_ = std::min(kMaxPresentShare, ratio * ratio) * largest;
+}
+
+SpringConstants StableStiffness::resolved(const SpringConstants& wanted,
+                                          const InverseMass& inverse_mass) const {
+  if (step_ == 0 || !(inverse_mass.frame > 0)) return wanted;
+  return {std::min(wanted.stiffness, kResolvedStiffness / (step_ * step_ * inverse_mass.frame)),
+          std::min(wanted.damping, kResolvedDamping / (step_ * inverse_mass.frame))};
 }
 
 SpringConstants StableStiffness::bounded(const Integrator& method, const SpringConstants& wanted,

@@ -178,6 +178,21 @@ TEST_CASE("a dragged point follows the mouse in the next interval") {
   CHECK((held(moved) - held(still)).x() > 1e-3);
 }
 
+TEST_CASE("a jump of the mouse moves the hand at a bounded speed, and it arrives") {
+  const std::unique_ptr<Scene> scene = parse(kBar);
+  LiveSimulation live(*scene);
+  const Part& bar = *scene->body.find("bar");
+  const SpringConstants spring = drag_spring(bar);
+  live.grab(point(bar, 0.3, 1.1), spring.stiffness, spring.damping);
+  const Vec3<double> start = live.drags()[0].path.last(), jump = start + Vec3<double>(0, 0, 3);
+  live.drag_to(jump);
+  live.advance();
+  const double first = (live.drags()[0].path.last() - start).norm();
+  CHECK(first == Approx(LiveSimulation::kMaxHandSpeed * bar.size() / live.rate()));
+  for (int k = 0; k < 120; ++k) live.advance();
+  CHECK(live.drags()[0].path.last() == jump);
+}
+
 TEST_CASE("the ledger counts the work of a drag") {
   const std::unique_ptr<Scene> scene = parse(hung_scene(R"({"tolerance": 1e-9})"));
   LiveSimulation live(*scene);
@@ -507,21 +522,20 @@ TEST_CASE("a reset simulation repeats its first motion") {
   CHECK(same_bits(live.simulation().state().q, first.q));
 }
 
-TEST_CASE(
-    "a drag of any soft part of the paper's figures is stable, and the held point comes nearer to the hand",
-    "[long]") {
-  for (const char* name : {"pull", "soft_pull", "balloons", "dragonfly", "springboard"})
+TEST_CASE("a drag of any part of the paper's figures is stable, and the held point comes nearer to the hand",
+          "[long]") {
+  for (const char* name : {"pull", "soft_pull", "gallery", "balloons", "dragonfly", "snowman", "springboard"})
     for (const double strength : {1.0, 1000.0}) {  // the middle and the end of the slider of the window
       Diagnostics diagnostics;
       const std::unique_ptr<Scene> scene =
           read_scene(std::string(PLIANT_SCENES) + "/" + name + ".json", {}, diagnostics);
       LiveSimulation live(*scene);
       for (const auto& part : scene->body.parts()) {
-        if (part->fixed() || part->local() == nullptr) continue;
+        if (part->fixed()) continue;
         CAPTURE(name, part->name(), strength);
         const SpringConstants spring = drag_spring(*part);
         Point held = point(*part, 0.2, 0.5);
-        held.patch = 0.1 * part->size();
+        if (part->local() != nullptr) held.patch = 0.1 * part->size();
         live.grab(held, strength * spring.stiffness, std::sqrt(strength) * spring.damping);
         const Vec3<double> hand = live.drags().back().target + 0.3 * part->size() * Vec3<double>::UnitZ();
         live.drag_to(hand);
@@ -536,9 +550,15 @@ TEST_CASE(
         for (int k = 0; k < 15; ++k) {
           REQUIRE_NOTHROW(live.advance());
           nearest = std::min(nearest, distance());
-          REQUIRE(distance() < 3 * before);
+          REQUIRE(distance() < 3 * before + 0.5);
         }
-        CHECK(nearest < 0.9 * before);
+        const auto& joints = live.simulation().model().joints();
+        const bool joined = std::any_of(joints.begin(), joints.end(), [&](const JointModel& joint) {
+          const auto& points = joint.joint->points();
+          return std::any_of(points.begin(), points.end(),
+                             [&](const Point& p) { return p.part == part.get(); });
+        });
+        CHECK((joined || nearest < 0.9 * before));
         live.release();
         for (int k = 0; k < 5; ++k) REQUIRE_NOTHROW(live.advance());
       }

@@ -32,7 +32,8 @@ struct Drag {
   Spring* spring;        ///< of the body; spring->a is the point of the part
   MaterialAngles place;  ///< the coordinates of the material point, from which it can be made again exactly
   GrowingPath path;      ///< of the point of the world
-  Vec3<double> target;   ///< position of the point of the world at the end of the next interval, m
+  Vec3<double> target;   ///< position to which the user has moved the point of the world, m
+  double reach;          ///< largest movement of the point of the world in an interval, m
   bool ends = false;     ///< whether the drag ends at the end of the next interval
 };
 
@@ -86,6 +87,7 @@ class LiveSimulation {
   /// intervals per second. With a fixed step, an interval is the nearest whole number of steps, at least one.
   /// Sets Scene::integrator to the chosen method and MultiBody::stop_rate. Throws what Simulation throws.
   explicit LiveSimulation(Scene& scene, double display_rate = 60, int threads = 1);
+  static constexpr double kMaxHandSpeed = 10;
 
   /// Advances by one interval. Throws what Simulation::step() throws; the simulation is then at the end of
   /// the last good step, and only reset() and saving make sense.
@@ -108,7 +110,8 @@ class LiveSimulation {
   /// constant.
   void grab(const Point& point, double stiffness, double damping);
   /// Moves the point of the world of the last drag to a position (m, world): it arrives there at the end of
-  /// the next interval.
+  /// the next interval, or later if its speed would exceed kMaxHandSpeed sizes of the part in a second, and
+  /// the extent of all parts in a second: a jump of the mouse would otherwise be a blow of the damper.
   void drag_to(const Vec3<double>& position);
   /// Ends the last drag at the end of the next interval.
   void release();
@@ -166,7 +169,7 @@ class LiveSimulation {
   void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);
-  SpringConstants bound_drag(const SpringConstants& wanted, Point& at) const;
+  SpringConstants bound_drag(const SpringConstants& constants, Point& at) const;
   std::string new_name() const;
 
   Scene* scene_;

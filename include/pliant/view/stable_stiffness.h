@@ -5,10 +5,16 @@
 
 namespace pliant {
 
-/// Returns the largest change of the velocity of a point of a moving part along a unit impulse, over all
-/// directions: the inverse of the effective mass, 1/kg. The part is without its joints. The point may have a
-/// patch of nodes.
-double inverse_mass(const Simulation& simulation, const Point& point);
+/// Inverse of the effective mass at a point, 1/kg: the largest change of the velocity of the point along a
+/// unit impulse, over all directions.
+struct InverseMass {
+  double frame;  ///< if only the frame and the global parameters of the part move
+  double local;  ///< if only its local coordinates move
+  double total() const { return frame + local; }
+};
+/// Returns the inverse of the effective mass at a point of a moving part without its joints. The point may
+/// have a patch of nodes.
+InverseMass inverse_mass(const Simulation& simulation, const Point& point);
 /// Returns the change of the rate of dynamic parameter number k of a part by a unit impulse, without joints:
 /// 1/kg for a length, else 1/(kg m^2).
 double inverse_mass(const Simulation& simulation, const Part& part, int k);
@@ -23,6 +29,9 @@ class StableStiffness {
   /// simulation: at its start. step: fixed step, s; 0 if steps adapt to a tolerance: nothing is then bounded.
   StableStiffness(const Simulation& simulation, double step);
 
+  /// Returns constants with which the steps resolve the motion of the frame and the global parameters: at
+  /// most the wanted ones.
+  SpringConstants resolved(const SpringConstants& wanted, const InverseMass& inverse_mass) const;
   /// Returns the largest constants, at most the wanted ones, with which the steps remain stable. The damping
   /// is at most half of the largest stable one, and the stiffness is then as large as possible. inverse_mass:
   /// of the masses on which the spring acts, 1/kg.
