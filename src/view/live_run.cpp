@@ -96,7 +96,13 @@ void LiveRun::post(Command command) {
 }
 
 void LiveRun::post_report(std::function<std::string(LiveSimulation&)> command) {
-  post([this, command = std::move(command)](LiveSimulation& simulation) { report_ = command(simulation); });
+  post([this, command = std::move(command)](LiveSimulation& simulation) {
+    try {
+      report_ = command(simulation);
+    } catch (const std::exception& failure) {
+      report_ = failure.what();
+    }
+  });
 }
 
 void LiveRun::wait_for(Command command) {
@@ -136,6 +142,7 @@ void LiveRun::reset() {
   pause();
   post([this](LiveSimulation& simulation) {
     failure_.clear();
+    report_.clear();
     simulation.reset();
     ledger_ = simulation.ledger();
   });

@@ -166,7 +166,9 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   const MaterialAngles place = angles(point.material);
   Point exact = point;
   exact.material = material_at(place.u, place.v, place.w);
-  const SpringConstants bounded = bound_drag({stiffness, damping}, exact);
+  const bool valid = stiffness >= 0 && damping >= 0 && std::isfinite(stiffness + damping);
+  const SpringConstants wanted{stiffness, damping},
+      bounded = valid ? bound_drag(wanted, exact) : wanted;  // MultiBody::spring() refuses others
   const Vec3<double> start = PlacedPoint(simulation_->model(), exact).at(state);
   GrowingPath path(now, start);
   Spring& spring =

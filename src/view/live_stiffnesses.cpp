@@ -108,10 +108,11 @@ void LiveSimulation::free_local_stiffnesses() {
   }
 }
 
-/// Returns whether the steps of the scene are stable at time 0 with this factor.
-bool LiveSimulation::is_stable(const LocalStiffness& stiffness, double factor) {
+/// Returns whether the steps of the scene are stable at time 0 with this factor, or as stable as without it.
+/// stable_without: the largest stable step without the factor, s.
+bool LiveSimulation::is_stable(const LocalStiffness& stiffness, double factor, double stable_without) {
   stiffness.path->restart(0, factor);
-  const bool stable = stable_step(*simulation_).step >= scene_->step;
+  const bool stable = stable_step(*simulation_).step >= std::min(scene_->step, stable_without);
   stiffness.path->restart(0, 1);
   return stable;
 }
@@ -125,12 +126,12 @@ void LiveSimulation::bound_local_stiffnesses() {
     for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.most = most;
     return;
   }
-  const double ratio = stable_step(*simulation_).step / scene_->step;
+  const double stable_without = stable_step(*simulation_).step, ratio = stable_without / scene_->step;
   std::vector<LocalStiffness> stable;
   for (LocalStiffness& stiffness : local_stiffnesses_) {
-    if (stiffness.part->local()->modal() != nullptr && !is_stable(stiffness, 0.5)) continue;
-    double factor = std::min(most, ratio * ratio);
-    while (factor > 1 && !is_stable(stiffness, factor)) factor *= share;
+    if (stiffness.part->local()->modal() != nullptr && !is_stable(stiffness, 0.5, stable_without)) continue;
+    double factor = std::min(most, share * ratio * ratio);
+    while (factor > 1 && !is_stable(stiffness, factor, stable_without)) factor *= share;
     stiffness.most = std::max(1.0, factor);
     stable.push_back(stiffness);
   }

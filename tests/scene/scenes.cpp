@@ -591,6 +591,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {
                                         "spring_without_direction",
                                         "stabilization_free_without_gains",
                                         "stiffness_factor_negative",
+                                        "stiffness_factor_of_an_unknown_law",
                                         "stiffness_given_twice",
                                         "stiffness_not_definite",
                                         "stiffness_not_square",

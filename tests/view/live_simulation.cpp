@@ -522,8 +522,10 @@ TEST_CASE("a reset simulation repeats its first motion") {
   CHECK(same_bits(live.simulation().state().q, first.q));
 }
 
-TEST_CASE("a drag of any part of the paper's figures is stable, and the held point comes nearer to the hand",
-          "[long]") {
+TEST_CASE(
+    "a drag of any part of the paper's figures is stable, and a held point without joints comes nearer to "
+    "the hand",
+    "[long]") {
   for (const char* name : {"pull", "soft_pull", "gallery", "balloons", "dragonfly", "snowman", "springboard"})
     for (const double strength : {1.0, 1000.0}) {  // the middle and the end of the slider of the window
       Diagnostics diagnostics;

@@ -208,12 +208,13 @@ PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion
   return trial(motion, motion.free.before, motion.free.begin, tau, motion.resting);
 }
 
-/// Returns a short motion from the end of another motion. At a kink of a load or path it has the loads before
-/// the kink: those after it act in the next step only.
+/// Returns a short motion from the end of another motion. At a kink (Model::next_kink) it has the loads
+/// before the kink: those after it act in the next step only.
 PLIANT_INLINE FrictionEvents::Trial FrictionEvents::probe(const Examined& motion, const Trial& from) {
   const Model& model = dynamics_.model();
   const double h = friction_events::kProbe * motion.free.h, end = from.free.end();
-  const bool at_kink = model.may_have_kinks() && std::isfinite(model.next_kink(end - h, end + h).time);
+  const double after = std::max(end - h, motion.free.begin);
+  const bool at_kink = model.may_have_kinks() && std::isfinite(model.next_kink(after, end + h).time);
   return trial(motion, from.state, at_kink ? end - h : end, h, from.contacts);
 }
 

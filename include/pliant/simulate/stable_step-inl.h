@@ -307,8 +307,10 @@ class StableStepSearch {
     const std::string name = "part '" + m.part->name() + "'";
     if (speed > 0) limit_by(kMaxRotation / speed, "the rotation of " + name);
     if (m.local == nullptr) return;
+    const TimeFunction* factor = m.part->local_factor();
     if (const Oscillators* modes = m.local->oscillators(); modes != nullptr && !is_implicit(m)) {
-      const double of_phase = kMaxPhase / std::sqrt(modes->omega2.maxCoeff());
+      const double now = factor != nullptr ? std::max(1.0, factor->value(state_.time())) : 1,
+                   of_phase = kMaxPhase / std::sqrt(now * modes->omega2.maxCoeff());
       if (model_.body().contact.active)
         limit_by(of_phase, "the modes of " + name + ", which impacts may excite");
       if (oscillates_freely(m) && is_pulled(i)) {
@@ -317,7 +319,7 @@ class StableStepSearch {
                               " exactly, so that longer steps may be stable in spite of the springs";
       }
     }
-    if (const TimeFunction* factor = m.part->local_factor(); factor != nullptr) limit_by_factor(m, *factor);
+    if (factor != nullptr) limit_by_factor(m, *factor);
     if (!is_implicit(m)) return;
     const Bound bound = bound_springs(model_, state_.time(), i);
     limit_by(stable_step_of(method_, bound.K, bound.D), "the springs at " + name);

@@ -50,8 +50,8 @@ class LiveRun {
   /// Performs a command on the thread of the simulation before its next interval. If the command throws, the
   /// next snapshot has the message.
   void post(Command command);
-  /// Performs a command likewise. Later snapshots have the text that it returns. A command that is posted
-  /// before the object is destroyed is performed.
+  /// Performs a command on the thread of the simulation before its next interval, or before the object is
+  /// destroyed. Later snapshots have the text that it returns, or the message if it throws.
   void post_report(std::function<std::string(LiveSimulation&)> command);
   void play();
   void pause();

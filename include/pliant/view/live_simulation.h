@@ -83,11 +83,13 @@ struct LocalStiffness {
 /// intervals, so that the motion can be repeated to the last bit (save_scene.h).
 class LiveSimulation {
  public:
+  /// Largest speed of the point of the world of a drag, in sizes of the part in a second; see drag_to().
+  static constexpr double kMaxHandSpeed = 10;
+
   /// Prepares the scene, which must outlive the object, at time 0. display_rate (1/s): wanted number of
   /// intervals per second. With a fixed step, an interval is the nearest whole number of steps, at least one.
   /// Sets Scene::integrator to the chosen method and MultiBody::stop_rate. Throws what Simulation throws.
   explicit LiveSimulation(Scene& scene, double display_rate = 60, int threads = 1);
-  static constexpr double kMaxHandSpeed = 10;
 
   /// Advances by one interval. Throws what Simulation::step() throws; the simulation is then at the end of
   /// the last good step, and only reset() and saving make sense.
@@ -109,9 +111,9 @@ class LiveSimulation {
   /// Throws std::invalid_argument if the point is not on a moving part, or for a negative or infinite
   /// constant.
   void grab(const Point& point, double stiffness, double damping);
-  /// Moves the point of the world of the last drag to a position (m, world): it arrives there at the end of
-  /// the next interval, or later if its speed would exceed kMaxHandSpeed sizes of the part in a second, and
-  /// the extent of all parts in a second: a jump of the mouse would otherwise be a blow of the damper.
+  /// Moves the point of the world of the last drag to a position (m, world), where it arrives at the end of
+  /// the next interval, or later. Its speed is at most the larger of kMaxHandSpeed sizes of the part and the
+  /// extent of all parts, per second. A jump of the mouse would otherwise give a large force of the damper.
   void drag_to(const Vec3<double>& position);
   /// Ends the last drag at the end of the next interval.
   void release();
@@ -165,7 +167,7 @@ class LiveSimulation {
   void bound_stiffnesses();
   void free_local_stiffnesses();
   void bound_local_stiffnesses();
-  bool is_stable(const LocalStiffness& stiffness, double factor);
+  bool is_stable(const LocalStiffness& stiffness, double factor, double stable_without);
   void extend_paths(double now, double next);
   void rebuild();
   void continue_from(State state);

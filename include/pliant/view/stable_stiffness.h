@@ -24,6 +24,7 @@ struct SpringConstants {
   double stiffness, damping;
 };
 
+/// Bounds for the fixed steps of one scene.
 class StableStiffness {
  public:
   /// simulation: at its start. step: fixed step, s; 0 if steps adapt to a tolerance: nothing is then bounded.
@@ -39,7 +40,8 @@ class StableStiffness {
 
  private:
   double step_;
-  double present_ = 0;  // K of the fastest motion of the scene itself, 1/s^2
+  double present_ = 0;  // estimated K of the fastest motion of the scene at time 0, 1/s^2; at most 3/4 of the
+                        // largest stable K
 };
 
 }  // namespace pliant

@@ -73,8 +73,9 @@ std::unique_ptr<Part> PartReader::read() {
   if (r_.boolean("fixed")) part_->fix();
   if (r_.given("motion")) read_motion(r_.object("motion"));
   if (r_.given("local") || r_.faulty("local")) {
+    const std::size_t faults = faults_.errors();
     read_local(r_.object("local"), body_.joint_solver.make_factor, faults_, *part_);
-    read_local_factor(r_.object("local"));
+    if (faults_.errors() == faults) read_local_factor(r_.object("local"));
   }
   read_elasticity();
   check_rigid_keys();
@@ -122,9 +123,8 @@ void PartReader::read_local_factor(const Reader& local) {
   const JsonValue& value = local.at("stiffness_factor");
   const std::optional<TimeFunction> factor = TimeReader(end_, faults_).function(value, Needs::value_and_rate);
   if (!factor) return;
-  constexpr int kTimes = 256;  // those at which TimeReader evaluates the function
-  for (int k = 0; k <= kTimes; ++k) {
-    const double t = k * end_ / kTimes, now = factor->value(t);
+  for (int k = 0; k <= TimeReader::kIntervals; ++k) {
+    const double t = k * end_ / TimeReader::kIntervals, now = factor->value(t);
     if (now >= 0) continue;
     return faults_.value(value,
                          "it is " + shortest(now) + " at t = " + shortest(t) + " s; expected at least 0");

@@ -29,7 +29,6 @@ std::optional<TimeVector> TimeReader::vector(const Reader& r, const char* key, N
 }
 
 bool TimeReader::finite(const JsonValue& at, const TimeFunction& f, Needs needs) const {
-  constexpr int kIntervals = 256;
   if (f.is_constant()) return true;
   for (int i = 0; i <= kIntervals; ++i) {
     const double t = end_ * i / kIntervals;

@@ -19,6 +19,9 @@ class TimeReader {
   /// end: end of the run, s.
   TimeReader(double end, SceneFaults& faults) : end_(end), faults_(faults) {}
 
+  /// Number of equal intervals of the run at whose ends functions are evaluated.
+  static constexpr int kIntervals = 256;
+
   /// End of the run, s.
   double end() const { return end_; }
   /// Returns the function that a validated value describes. Reports a fault and returns nothing if the

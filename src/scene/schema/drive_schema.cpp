@@ -56,13 +56,13 @@ Record drive_record(std::string name, const std::string& unit, const std::string
 Record parameter_drive_record() {
   const Units units{"m, rad or 1", "m/s, rad/s or 1/s", "N/m for a length, else N m",
                     "N s/m for a length, else N m s", "N for a length, else N m"};
-  return drive_of(
-      "parameter_drive", "a parameter x", target_of(units),
-      optional("rate", state_function(units.rate, unbounded()), kRateText),
-      optional("stiffness", state_function(units.stiffness, unbounded()),
-               "Stiffness, in addition to that of the parameter. A negative one makes the parameter softer.",
-               "0"),
-      units);
+  return drive_of("parameter_drive", "a parameter x", target_of(units),
+                  optional("rate", state_function(units.rate, unbounded()), kRateText),
+                  optional("stiffness", state_function(units.stiffness, unbounded()),
+                           "Stiffness, in addition to that of the parameter. A negative one makes the "
+                           "parameter softer; a negative sum makes it unstable.",
+                           "0"),
+                  units);
 }
 
 Record ball_drive_record() {

@@ -10,8 +10,7 @@ namespace pliant {
 /// Returns the record of a drive on a coordinate of a joint. name: of the record. unit: of the coordinate,
 /// "m" or "rad"; force: of the force along it.
 schema::Record drive_record(std::string name, const std::string& unit, const std::string& force);
-/// Returns the record of a drive on a parameter. Its units are empty: they depend on the name of the
-/// parameter.
+/// Returns the record of a drive on a parameter. Its units are those of lengths, angles and numbers.
 schema::Record parameter_drive_record();
 /// Returns the record of a drive of a ball joint, whose target has three components.
 schema::Record ball_drive_record();

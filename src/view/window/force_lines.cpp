@@ -33,13 +33,20 @@ bool ForceLines::add_to_panel() {
 }
 
 void ForceLines::add(const ForceArrows& arrows, double size, Picture& picture) {
-  for (const auto* kind : {&arrows.contacts, &arrows.joints, &arrows.loads})
-    for (const ForceArrow& arrow : *kind) largest_ = std::max(largest_, arrow.force.norm());
+  struct Kind {
+    bool shown;
+    const std::vector<ForceArrow>& arrows;
+    const Eigen::Vector3f& color;
+  };
+  const Kind kinds[] = {{shown_.contacts, arrows.contacts, kContactColor},
+                        {shown_.joints, arrows.joints, kJointColor},
+                        {shown_.loads, arrows.loads, kLoadColor}};
+  for (const Kind& kind : kinds)
+    for (const ForceArrow& arrow : kind.arrows)
+      if (kind.shown) largest_ = std::max(largest_, arrow.force.norm());
   if (!(largest_ > 0)) return;
-  const double scale = kLongestForce * size / largest_;
-  if (shown_.contacts) add(arrows.contacts, kContactColor, scale, picture);
-  if (shown_.joints) add(arrows.joints, kJointColor, scale, picture);
-  if (shown_.loads) add(arrows.loads, kLoadColor, scale, picture);
+  for (const Kind& kind : kinds)
+    if (kind.shown) add(kind.arrows, kind.color, kLongestForce * size / largest_, picture);
 }
 
 void ForceLines::add(const std::vector<ForceArrow>& arrows, const Eigen::Vector3f& color, double scale,

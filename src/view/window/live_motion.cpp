@@ -165,9 +165,9 @@ void LiveMotion::release() {
 
 std::string LiveMotion::save() {
   run_.post_report([options = options_](LiveSimulation& simulation) {
+    const std::string text = saved_scene(simulation, options.scene_folder, options.saved.parent_path());
     std::ofstream file(options.saved);
-    file << saved_scene(simulation, options.scene_folder, options.saved.parent_path());
-    return (file.flush() ? "saved in " : "cannot write ") + options.saved.string();
+    return ((file << text).flush() ? "saved in " : "cannot write ") + options.saved.string();
   });
   return {};  // the next snapshots have the text
 }

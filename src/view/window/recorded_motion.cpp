@@ -1,6 +1,7 @@
 #include "recorded_motion.h"
 
 #include <algorithm>
+#include <exception>
 #include <ostream>
 
 #include <imgui.h>
@@ -59,18 +60,30 @@ void RecordedMotion::add_forces() {
     const std::int64_t middle = row + (end - row) / 2;
     (recording_->time(middle) <= time_ ? row : end) = middle;
   }
-  const State state = recording_->state(row);
-  ForceArrows arrows;
-  if (forces_.shown().contacts && contacts_)
-    for (const RecordedContacts::Force& force : contacts_->at(recording_->time(row)))
-      arrows.contacts.push_back({force.at, force.force});
-  if (forces_.shown().joints) arrows.joints = joint_forces(dynamics_, state);
-  if (forces_.shown().loads) arrows.loads = load_forces(dynamics_, state);
-  forces_.add(arrows, size_, film_->shown().picture());
+  if (row != forces_row_) evaluate_forces(row);
+  forces_.add(arrows_, size_, film_->shown().picture());
+}
+
+/// Computes the forces that are shown at a recorded state.
+void RecordedMotion::evaluate_forces(std::int64_t row) {
+  forces_row_ = row;
+  arrows_ = {};
+  fault_.clear();
+  try {
+    const State state = recording_->state(row);
+    if (forces_.shown().contacts && contacts_)
+      for (const RecordedContacts::Force& contact : contacts_->at(recording_->time(row)))
+        if (contact.force.allFinite()) arrows_.contacts.push_back({contact.at, contact.force});
+    if (forces_.shown().joints) arrows_.joints = joint_forces(dynamics_, state);
+    if (forces_.shown().loads) arrows_.loads = load_forces(dynamics_, state);
+  } catch (const std::exception& fault) {
+    fault_ = fault.what();
+  }
 }
 
 void RecordedMotion::toggle_forces() {
   forces_.toggle();
+  forces_row_ = -1;
   changed_ = true;
 }
 
@@ -100,7 +113,11 @@ void RecordedMotion::add_to_panel(const std::string&) {
   if (ImGui::SliderFloat("##time", &time, static_cast<float>(first_), static_cast<float>(last_),
                          "t = %.3f s"))
     show(time);
-  if (forces_.add_to_panel()) changed_ = true;
+  if (forces_.add_to_panel()) {
+    forces_row_ = -1;
+    changed_ = true;
+  }
+  if (!fault_.empty()) ImGui::TextWrapped("%s", fault_.c_str());
   if (forces_.shown().contacts && !contacts_ && scene_->body.contact.active)
     ImGui::TextWrapped(
         "contacts are not recorded; \"output\": {\"contacts\": true} in the scene records them");

@@ -1,6 +1,12 @@
 // The recording of a window.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <pliant/body/dynamics.h>
 #include <pliant/io/contact_recording.h>
 #include <pliant/io/run/wall_clock.h>
 #include <pliant/render/film.h>
@@ -36,6 +42,7 @@ class RecordedMotion final : public Motion {
  private:
   void show(double time);
   void add_forces();
+  void evaluate_forces(std::int64_t row);
 
   Scene* scene_;
   const Model* model_;
@@ -44,6 +51,9 @@ class RecordedMotion final : public Motion {
   Dynamics dynamics_;
   std::optional<RecordedContacts> contacts_;  // not set if the run has not recorded them
   ForceLines forces_;
+  std::int64_t forces_row_ = -1;  // recorded state of arrows_; -1: none
+  ForceArrows arrows_;
+  std::string fault_;           // message, if the forces cannot be computed
   double size_ = 1;             // of the scene at the start, m
   double first_, last_, time_;  // s
   bool plays_ = false, changed_ = true;
