@@ -121,7 +121,8 @@ TEST_CASE("a factor of the stiffness of modes and polynomials acts as laws with 
   }
 }
 
-TEST_CASE("the balance has the work of a factor of the local stiffness that changes", "[local][motion]") {
+TEST_CASE("the balance has the work of a factor of the local stiffness that changes",
+          "[local][motion][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const Basis basis : {Basis::nodes, Basis::modes}) {
       const std::string name = law.name;
