@@ -181,16 +181,16 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
 }
 
 /// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the frame.
-/// Enlarges the patch of nodes at the point, and with it the dragged mass, until they are the wanted ones or
-/// the patch is kLargestPatch sizes of the part large.
+/// Doubles the patch of nodes at the point, and with it the dragged mass, until they are the wanted ones, but
+/// not beyond kLargestPatch sizes of the part.
 SpringConstants LiveSimulation::bound_drag(const SpringConstants& constants, Point& at) const {
-  constexpr double kLargestPatch = 0.4;
+  constexpr double kLargestPatch = 0.5;
   const SpringConstants wanted = stable_->resolved(constants, inverse_mass(*simulation_, at));
   for (;;) {
     const SpringConstants bounded =
         stable_->bounded(simulation_->integrator(), wanted, inverse_mass(*simulation_, at).total());
     const bool whole = bounded.stiffness == wanted.stiffness && bounded.damping == wanted.damping;
-    if (whole || at.patch == 0 || at.patch >= kLargestPatch * at.part->size()) return bounded;
+    if (whole || at.patch == 0 || 2 * at.patch > kLargestPatch * at.part->size()) return bounded;
     at.patch *= 2;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/QR>
 
@@ -29,12 +30,12 @@ bool is_stable(const Integrator& method, double K, double D, double h) {
 }
 
 /// Returns the largest number below an unstable one that is stable, by bisection.
-template <class IsStable>
-double largest_below(double unstable, IsStable&& is_stable) {
+template <class Condition>
+double largest_below(double unstable, Condition&& stable) {
   double low = 0, high = unstable;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
-    (is_stable(middle) ? low : high) = middle;
+    (stable(middle) ? low : high) = middle;
   }
   return low;
 }

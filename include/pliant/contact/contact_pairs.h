@@ -1,4 +1,4 @@
-// The pair of bodies at a contact, and contacts sorted by their pairs.
+// The pair of bodies at a contact, contacts sorted by their pairs, and contacts at nodes.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,11 @@
 #include <pliant/collision/contact.h>
 
 namespace pliant {
+
+/// Returns whether one of the sides of a contact is at nodes of a mesh.
+inline bool is_at_nodes(const Contact& contact) {
+  return contact.a.at_nodes() || contact.b.at_nodes();
+}
 
 /// Numbers of part a, part b, plane and obstacle; -1: none.
 using PairKey = std::array<int, 4>;

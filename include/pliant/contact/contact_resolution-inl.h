@@ -1,13 +1,11 @@
-// Function bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of impacts
-// (impulses that push bodies into others), and the separation of overlaps.
+// Function bodies of contact_resolution.h: the contact cache, one resolution with its work, and chains of
+// impacts (impulses that push bodies into others). contact_separation-inl.h has the separation of overlaps.
 #pragma once
 
 #include <pliant/contact/contact_resolution.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 #include <utility>
 
 #include <pliant/body/advance.h>
@@ -15,7 +13,6 @@
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/load_work.h>
 #include <pliant/contact/touched_parts.h>
-#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 #include <pliant/project/project.h>
@@ -24,39 +21,14 @@ namespace pliant {
 
 namespace contact_resolution {
 
-/// Overlapping bodies are separated at most at this speed, in sizes of the smaller body times slow_rate(),
-/// plus the speed of their own travel.
-inline constexpr double kSeparationSpeed = 1;
-/// Largest number of rounds of a separation. A round may push bodies into others, which the next round
-/// separates.
-inline constexpr int kMaxSeparationRounds = 16;
 /// Largest number of successive resolutions after a motion whose impulses push bodies into others
 /// (resolve_chain).
 inline constexpr int kMaxChainLinks = 4;
-/// Overlaps below this share of the largest gap of a resting contact (RestingContacts::tight_gap) are not
-/// separated.
-inline constexpr double kAllowedOverlap = 1e-4;
-/// With ContactSettings::tolerance, overlaps up to kOverlapPerTolerance times the tolerance, in sizes of the
-/// smaller body, are not separated, if they are at most kMaxAllowedOverlap times RestingContacts::gap: a body
-/// that overlaps by more than this gap would rest at any velocity.
-inline constexpr double kOverlapPerTolerance = 1e-3, kMaxAllowedOverlap = 0.5;
-/// Overlaps of this many units in the last place of the positions are not separated either.
-inline constexpr double kRoundingUlps = 16;
-/// Contacts at nodes of meshes may overlap by this multiple of RestingContacts::tight_gap.
-inline constexpr double kMeshOverlap = 800;
 /// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
 /// than this share of the size of the smaller body.
 inline constexpr double kSameContact = 0.05;
 /// Largest number of warm-started steps in a row.
 inline constexpr int kMaxWarmStartAge = 10;
-/// Tolerance of a separation, as a share of the overlap that may remain.
-inline constexpr double kSeparationTolerance = 0.03;
-
-/// Returns whether one of the sides of a contact is at nodes of a mesh.
-inline bool is_at_nodes(const Contact& contact) {
-  return contact.a.at_nodes() || contact.b.at_nodes();
-}
-
 /// Returns a state in which the impulses of a solved problem have acted for `time` seconds at all contacts.
 /// state: that before the impulses. The displacements of the problem become `time` times the changes of
 /// velocity.
@@ -114,17 +86,6 @@ PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide
   if (m.q0 < 0) return 0;
   const double turn = h * state.v.segment<3>(m.v0 + 3).norm();
   return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
-}
-
-/// Returns the distance (m) by which a contact may be opened in a step of h seconds: the distance at
-/// kSeparationSpeed plus the travel of its bodies.
-PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contact, double h) const {
-  const Model& model = dynamics_.model();
-  double distance =
-      contact_resolution::kSeparationSpeed * (slow_rate(model) * h) * smaller_size(model, contact);
-  for (const ContactSide* side : {&contact.a, &contact.b})
-    if (side->part >= 0) distance += travel_[at(side->part)];
-  return distance;
 }
 
 /// Returns the contact point in the frame of part a, m. In this frame the contact point of a resting contact
@@ -287,7 +248,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   // either, because elastic forces are not constant. Then Work::contact, or Work::anchors for a prescribed
   // path, is corrected: the works of this resolution add up to the change of the energy of the touched parts.
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state,
-             at_nodes = std::any_of(contacts.begin(), contacts.end(), contact_resolution::is_at_nodes);
+             at_nodes = std::any_of(contacts.begin(), contacts.end(), is_at_nodes);
   const bool by_energy = driven || instant || state.at_limit != before.at_limit ||
                          state.joints != before.joints || (at_nodes && motion.force_time < h);
   // Methods with a reach of 1 conserve the energy at the positions half a step earlier, and the work of
@@ -376,132 +337,6 @@ PLIANT_INLINE void ContactResolution::add_ejections(const State& state) {
     if (m.n_d() > 0)
       travel_[i] += local_levers(m).cwiseProduct(change.tail(m.n_d())).lpNorm<Eigen::Infinity>();
   }
-}
-
-/// Returns the depth of a contact that need not be separated, m.
-PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) const {
-  if (contact_resolution::is_at_nodes(contact))
-    return contact_resolution::kMeshOverlap * resting_.tight_gap(contact);
-  double size = 0;
-  for (const ContactSide* side : {&contact.a, &contact.b})
-    if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
-  const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
-  const double tolerance = dynamics_.model().body().contact.tolerance.value_or(0),
-               loose = std::min(contact_resolution::kOverlapPerTolerance * tolerance *
-                                    smaller_size(dynamics_.model(), contact),
-                                contact_resolution::kMaxAllowedOverlap * resting_.gap(contact));
-  return std::max({contact_resolution::kAllowedOverlap * resting_.tight_gap(contact), loose,
-                   contact_resolution::kRoundingUlps * rounding});
-}
-
-/// Records the overlaps that remain at time t (s). The tolerance of the record is allowed_overlap(), or
-/// RestingContacts::tight_gap if that is larger.
-PLIANT_INLINE void ContactResolution::record_overlaps(const std::vector<Contact>& contacts, double t) {
-  record_.overlap = 0;
-  record_.worst_overlap = {};
-  for (const Contact& contact : contacts) {
-    if (!(contact.gap < 0)) continue;
-    record_.overlap = std::max(record_.overlap, -contact.gap);
-    record_.worst_overlap.keep_worse(
-        {-contact.gap, std::max(allowed_overlap(contact), resting_.tight_gap(contact)), t});
-  }
-}
-
-/// Keeps the contacts that the separation of deep contacts affects. These are the contacts of bodies that
-/// move as a whole and are connected by contacts to a body with a deep contact. If a pair has a deep contact
-/// at nodes of a mesh, all contacts of this pair are kept, too.
-PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contacts,
-                                                    const Workspace<double>& work) const {
-  const Model& model = dynamics_.model();
-  DisjointSets connected(model.parts().size());
-  auto is_whole = [&](const ContactSide& side) {
-    return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
-           !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
-  };
-  // A body is represented by the first part of its island.
-  auto body_of = [&](int part) {
-    const int island = model.parts()[at(part)].island;
-    return connected.root(island < 0 ? part : model.islands()[at(island)].parts.front());
-  };
-  for (const Contact& contact : contacts)
-    if (is_whole(contact.a) && is_whole(contact.b))
-      connected.unite(body_of(contact.a.part), body_of(contact.b.part));
-  std::set<std::pair<int, int>> pairs;
-  std::vector<bool> affected(model.parts().size(), false);
-  for (const Contact& contact : contacts) {
-    if (!(contact.gap < -allowed_overlap(contact))) continue;
-    if (contact_resolution::is_at_nodes(contact)) pairs.insert({contact.a.part, contact.b.part});
-    for (const ContactSide* side : {&contact.a, &contact.b})
-      if (is_whole(*side)) affected[at(body_of(side->part))] = true;
-  }
-  auto moves = [&](int part) { return part >= 0 && affected[at(body_of(part))]; };
-  contacts.erase(
-      std::remove_if(contacts.begin(), contacts.end(),
-                     [&](const Contact& c) {
-                       return !moves(c.a.part) && !moves(c.b.part) && pairs.count({c.a.part, c.b.part}) == 0;
-                     }),
-      contacts.end());
-}
-
-/// Returns the contacts near a state, with those of bodies that a separation in a step may push into others.
-PLIANT_INLINE std::vector<Contact> ContactResolution::contacts_to_separate(const StepContext& step) {
-  const State& state = step.state;
-  std::vector<Contact> found = resting_.near(state, step.t);
-  double deepest = 0, largest = 0;
-  for (const Contact& contact : found) {
-    deepest = std::max(deepest, -contact.gap);
-    largest = std::max(largest, largest_separation(contact, step.h));
-  }
-  if (deepest > resting_.gap()) found = finder_.find(state, step.t, std::min(deepest, largest));
-  meshes_.find(state, step.t, found);
-  return found;
-}
-
-/// One round of a separation: displaces the bodies at some contacts, and adds the work of this displacement.
-PLIANT_INLINE void ContactResolution::separate(StepContext& step, const std::vector<Contact>& contacts) {
-  State& state = step.state;
-  const double t = step.t;
-  double tolerance = std::numeric_limits<double>::infinity();
-  std::vector<double> max_separation;
-  for (const Contact& contact : contacts) {
-    tolerance = std::min(tolerance, contact_resolution::kSeparationTolerance * allowed_overlap(contact));
-    max_separation.push_back(largest_separation(contact, step.h));
-  }
-  const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
-  const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_),
-               work_before = state.work.sum();
-  evaluate_touched(dynamics_, state, t, contacts, step.work);
-  ContactProblem separation(dynamics_.model(), state, step.work, contacts);
-  separation.separate_bodies(max_separation, tolerance);
-  LoadWork loads(dynamics_, state);
-  apply_solution(separation, dynamics_.model(), step.work, state);
-  reconcile(step, parts);
-  state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
-  state.work[static_cast<int>(Work::contact)] +=
-      dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
-}
-
-/// Stage 7 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
-/// that this separation pushes into others are separated completely. Records the overlaps that remain.
-PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
-  for (int i = 0;; ++i) {
-    std::vector<Contact> found = contacts_to_separate(step);
-    record_overlaps(found, step.t);
-    std::vector<PairKey> too_deep;
-    bool any_deep = false;
-    for (Contact& contact : found) {
-      // The next steps remove the remaining overlap of a pair that was separated by its allowed distance.
-      if (fully_separated_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
-      if (i == 0 && contact.gap < -largest_separation(contact, step.h)) too_deep.push_back(key_of(contact));
-      any_deep = any_deep || contact.gap < -allowed_overlap(contact);
-    }
-    if (!any_deep) return;
-    if (i == contact_resolution::kMaxSeparationRounds) break;
-    fully_separated_.insert(too_deep.begin(), too_deep.end());
-    keep_affected(found, step.work);
-    separate(step, found);
-  }
-  ++step.counters.contact_cutoffs;
 }
 
 }  // namespace pliant

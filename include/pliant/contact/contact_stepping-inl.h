@@ -501,7 +501,7 @@ PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) 
   // therefore moves the node by h times the change.
   if (progress.method.local_is_implicit())
     for (Contact& contact : contacts)
-      if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = free.force_time();
+      if (is_at_nodes(contact)) contact.since = free.force_time();
   has_unlocated_ = has_unlocated_ || !contacts.empty();
   progress.clock.lap(times_.finding);
   if (is_sequential()) resolve_sequence(motion, step);
