@@ -2,6 +2,7 @@
 
 #include <pliant/math/formula.h>
 #include <pliant/math/time/linear_keys.h>
+#include <pliant/math/time/sum_of_functions.h>
 
 #include "scene/json/json_write.h"
 
@@ -101,6 +102,16 @@ Type point_key_frames() {
       .checked(key_rule("points"));
 }
 
+Type sum_of_functions() {
+  const Type terms =
+      array(one_of({number(unbounded(), ""), formula(), key_frames()}), 1)
+          .expecting("an array of one or more numbers, formulas of t in quotes, or key frames");
+  return record({"sum_of_functions",
+                 "The sum of functions of time. The viewer writes it if gravity changes in the scene and by "
+                 "hand.",
+                 {required("sum", terms, "The functions, in the unit of the sum.", "[\"sin(t)\", 1]")}});
+}
+
 std::string in(const std::string& unit) {
   return unit.empty() || unit == "1" ? "" : " (" + unit + ")";
 }
@@ -110,7 +121,7 @@ std::string in(const std::string& unit) {
 Type time_function(std::string unit) {
   const std::string words =
       "a number" + in(unit) + ", a formula of t in quotes, or key frames {\"t\": [...], \"y\": [...]}";
-  return one_of({number(unbounded(), std::move(unit)), formula(), key_frames()})
+  return one_of({number(unbounded(), std::move(unit)), formula(), key_frames(), sum_of_functions()})
       .expecting(words)
       .defined_as("time_function");
 }
@@ -159,6 +170,11 @@ TimeFunction through(const JsonValue& frames, std::vector<double> t, std::vector
 TimeFunction read_time_function(const JsonValue& value) {
   if (value.is_number()) return value.number();
   if (value.is_string()) return TimeFunction::formula(value.string());
+  if (const JsonValue* terms = value.find("sum")) {
+    TimeFunction sum;
+    for (const JsonValue& term : terms->array()) sum = sum + read_time_function(term);
+    return sum;
+  }
   std::vector<double> t = numbers(*value.find("t")), y = numbers(*value.find("y"));
   if (const JsonValue* rates = value.find("end_rates")) {
     return TimeFunction::key_frames(std::move(t), std::move(y), rates->array()[0].number(),

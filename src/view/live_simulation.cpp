@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/body/placed_point.h>
+#include <pliant/math/time/sum_of_functions.h>
 
 namespace pliant {
 
@@ -53,7 +54,7 @@ TimeVector GrowingPath::function() const {
 }
 
 LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
-    : scene_(&scene), threads_(threads), rate_(display_rate) {
+    : scene_(&scene), threads_(threads), rate_(display_rate), changing_gravity_(scene.body.changing_gravity) {
   if (!(display_rate > 0) || !std::isfinite(display_rate))
     throw std::invalid_argument("a display rate of " + std::to_string(display_rate) +
                                 " per second; expected a positive number");
@@ -69,6 +70,7 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
     scene.integrator = Simulation(scene.body, kAutomatic, threads, scene.tolerance).integrator().name();
   reset();
   find_parameter_stiffnesses();
+  find_drive_stiffnesses();
   stable_.emplace(*simulation_, scene.tolerance > 0 ? 0 : scene.step);
   bound_stiffnesses();
   bound_local_stiffnesses();
@@ -121,6 +123,8 @@ void LiveSimulation::extend_paths(double now, double next) {
     if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
   for (ParameterStiffness& stiffness : parameter_stiffnesses_)
     if (stiffness.servo != nullptr) extend(*stiffness.added, stiffness.next - stiffness.first, now, next);
+  for (DriveStiffness& stiffness : drive_stiffnesses_)
+    if (stiffness.path) extend(*stiffness.path, stiffness.next, now, next);
 }
 
 void LiveSimulation::rebuild() {
@@ -131,7 +135,7 @@ void LiveSimulation::reset() {
   simulation_.reset();
   for (const Drag& drag : drags_) scene_->body.remove(*drag.spring);
   drags_.clear();
-  if (gravity_) scene_->body.changing_gravity.reset();
+  scene_->body.changing_gravity = changing_gravity_;
   gravity_.reset();
   for (RestValue& rest : rest_values_) rest.path->restart(0, rest.next = rest.first);
   for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.path->restart(0, stiffness.next = 1);
@@ -143,6 +147,10 @@ void LiveSimulation::reset() {
     stiffness.next = stiffness.first;
     if (stiffness.servo != nullptr) scene_->body.remove(*stiffness.servo);
     stiffness.servo = nullptr;
+  }
+  for (DriveStiffness& stiffness : drive_stiffnesses_) {
+    stiffness.drive->stiffness = stiffness.next = stiffness.first;
+    stiffness.path.reset();
   }
   intervals_ = 0;
   rebuild();
@@ -228,10 +236,13 @@ void LiveSimulation::release() {
 
 void LiveSimulation::set_gravity(const Vec3<double>& gravity) {
   if (!gravity_) {
-    if (scene_->body.changing_gravity)
-      throw std::invalid_argument("the gravity of this scene changes in time; it cannot be changed by hand");
-    gravity_ = std::make_unique<GrowingPath>(0, scene_->body.gravity);
-    scene_->body.changing_gravity = gravity_->function();
+    const Vec3<double> first = changing_gravity_ ? Vec3<double>::Zero() : scene_->body.gravity;
+    gravity_ = std::make_unique<GrowingPath>(0, first);
+    TimeVector all = gravity_->function();
+    if (changing_gravity_)
+      for (std::size_t i = 0; i < 3; ++i)
+        all.component[i] = changing_gravity_->component[i] + all.component[i];
+    scene_->body.changing_gravity = all;
     continue_from(simulation_->state());
   }
   next_gravity_ = gravity;

@@ -56,9 +56,21 @@ void LiveSimulation::find_parameter_stiffnesses() {
   }
 }
 
-/// Finds up to which stiffnesses of springs and parameters the fixed steps are stable.
+void LiveSimulation::find_drive_stiffnesses() {
+  for (const auto& drive : scene_->body.drives()) {
+    const Part* part = drive->on.part;
+    if (drive->on.kind != Signal::Kind::parameter || part->fixed()) continue;
+    if (!drive->stiffness.is_constant() || !(drive->stiffness.constant() > 0)) continue;
+    if (part->local() != nullptr && simulation_->integrator().local_is_implicit()) continue;
+    const double first = drive->stiffness.constant();
+    drive_stiffnesses_.push_back(
+        {drive.get(), part, part->parameters().moving(drive->on.index).name, first, first, nullptr, first});
+  }
+}
+
+/// Finds up to which stiffnesses of springs, drives and parameters the fixed steps are stable.
 void LiveSimulation::bound_stiffnesses() {
-  constexpr double most_of_springs = 10, most_of_parameters = 100;
+  constexpr double most_of_springs = 10, most_of_drives = 10, most_of_parameters = 100;
   const Integrator& method = simulation_->integrator();
   const auto bounded = [&](double first, double most, double inverse_mass) {
     return first + stable_->bounded(method, {(most - 1) * first, 0}, inverse_mass).stiffness;
@@ -75,6 +87,9 @@ void LiveSimulation::bound_stiffnesses() {
     const int k = rest.part->parameters().dynamic_number(rest.parameter);
     stiffness.most = bounded(stiffness.first, most_of_parameters, inverse_mass(*simulation_, *rest.part, k));
   }
+  for (DriveStiffness& stiffness : drive_stiffnesses_)
+    stiffness.most = bounded(stiffness.first, most_of_drives,
+                             inverse_mass(*simulation_, *stiffness.part, stiffness.drive->on.index));
 }
 
 void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
@@ -94,6 +109,28 @@ void LiveSimulation::set_parameter_stiffness(std::size_t i, double value) {
   stiffness.servo->target = TimeFunction(rest.path);
   stiffness.servo->stiffness = TimeFunction(stiffness.added);
   continue_from(simulation_->state());
+}
+
+void LiveSimulation::set_drive_stiffness(std::size_t i, double value) {
+  DriveStiffness& stiffness = drive_stiffnesses_.at(i);
+  Drive& drive = *stiffness.drive;
+  if (!(value >= 0) || !std::isfinite(value))
+    throw std::invalid_argument("a stiffness of " + std::to_string(value) + " for the drive of " +
+                                stiffness.part->name() + "." + stiffness.parameter +
+                                "; expected a number of at least 0");
+  stiffness.next = value;
+  if (stiffness.path) return;
+  State state = simulation_->state();
+  if (drive.is_passive()) {
+    const Part& part = *stiffness.part;
+    const int number = part.parameters().find(stiffness.parameter);
+    const auto values = simulation_->model().values(state, scene_->body.index(part));
+    const double difference = drive.target.constant() - values.b[static_cast<std::size_t>(number)];
+    state.work[static_cast<int>(Work::actuation)] -= 0.5 * stiffness.first * difference * difference;
+  }
+  stiffness.path = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{stiffness.first});
+  drive.stiffness = TimeFunction(stiffness.path);
+  continue_from(std::move(state));
 }
 
 /// Makes the factors of local stiffness that the user can change functions of time.

@@ -71,6 +71,45 @@ void set_stiffnesses(Json& document, const LiveSimulation& simulation) {
     if (stiffness.path) document["springs"][stiffness.number]["stiffness"] = key_frames_of(*stiffness.path);
 }
 
+/// Writes the stiffnesses that the user has changed into the drives of parameters of the document.
+void set_drive_stiffnesses(Json& document, const LiveSimulation& simulation) {
+  for (const DriveStiffness& stiffness : simulation.drive_stiffnesses()) {
+    if (!stiffness.path) continue;
+    const auto number = static_cast<std::size_t>(simulation.scene().body.index(*stiffness.part));
+    document["parts"][number]["parameters"][stiffness.parameter]["drive"]["stiffness"] =
+        key_frames_of(*stiffness.path);
+  }
+}
+
+/// Returns component i of a vector function of time in a document.
+Json component_of(const Json& vector, std::size_t i) {
+  if (vector.is_array()) return vector[i];
+  Json frames = vector;
+  frames.erase("points");
+  for (const Json& point : vector["points"]) frames["y"].push_back(point[i]);
+  return frames;
+}
+
+/// Writes the gravity that the user has changed into the document.
+void set_gravity(Json& document, const LiveSimulation& simulation) {
+  if (simulation.gravity() == nullptr) return;
+  if (!simulation.changing_gravity()) {
+    document["gravity"] = key_frames_of(*simulation.gravity());
+    return;
+  }
+  Json sums = Json::array();
+  for (std::size_t i = 0; i < 3; ++i) {
+    Json component = component_of(document["gravity"], i), terms = Json::array();
+    if (component.contains("sum"))
+      terms = component["sum"];
+    else
+      terms.push_back(std::move(component));
+    terms.push_back(key_frames_of(*simulation.gravity()->component[i]));
+    sums.push_back({{"sum", std::move(terms)}});
+  }
+  document["gravity"] = std::move(sums);
+}
+
 /// Adds the servos that change stiffnesses of parameters to the parts of the document.
 void set_parameter_stiffnesses(Json& document, const LiveSimulation& simulation) {
   for (const ParameterStiffness& stiffness : simulation.parameter_stiffnesses()) {
@@ -123,9 +162,10 @@ std::string saved_scene(const LiveSimulation& simulation, const std::filesystem:
   document["output"]["frame_rate"] = simulation.rate();
   set_stiffnesses(document, simulation);
   for (const Drag& drag : simulation.drags()) document["springs"].push_back(spring_of(drag));
-  if (simulation.gravity() != nullptr) document["gravity"] = key_frames_of(*simulation.gravity());
+  set_gravity(document, simulation);
   set_rest_values(document, simulation);
   set_parameter_stiffnesses(document, simulation);
+  set_drive_stiffnesses(document, simulation);
   set_local_stiffnesses(document, simulation);
   move_meshes(document, scene_folder, folder);
   return document.dump(1) + "\n";

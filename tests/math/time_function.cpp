@@ -9,6 +9,7 @@
 
 #include <pliant/math/formula.h>
 #include <pliant/math/time/linear_keys.h>
+#include <pliant/math/time/sum_of_functions.h>
 
 #include "catch.h"
 
@@ -87,6 +88,32 @@ TEST_CASE("linear key frames are straight lines with a kink at every key") {
   CHECK(growing.at(0.5).d == 1);
   growing.restart(0, 7);
   CHECK(growing.at(0.5).v == 7);
+}
+
+TEST_CASE("a sum of functions of time has the values and the kinks of both") {
+  const TimeFunction lines = pliant::linear_key_frames({1, 2}, {3, 7}),
+                     formula = TimeFunction::formula("t^2"), sum = lines + formula;
+  for (const double t : {0.5, 1.25, 3.0}) {
+    CHECK(sum.at(t).v == lines.at(t).v + formula.at(t).v);
+    CHECK(sum.at(t).d == lines.at(t).d + formula.at(t).d);
+    CHECK(sum.at(t).dd == lines.at(t).dd + formula.at(t).dd);
+  }
+  CHECK(sum.first_kink(0, 5).time == 1);
+  CHECK((formula + lines).first_kink(1, 5).time == 2);
+  CHECK((TimeFunction(1) + TimeFunction(2)).is_constant());
+  CHECK((TimeFunction(1) + TimeFunction(2)).first_value() == 3);
+  CHECK_FALSE(sum.is_constant());
+}
+
+TEST_CASE("the first value of a function of time is its value at time 0") {
+  CHECK(TimeFunction(2).first_value() == 2);
+  CHECK(TimeFunction::formula("3 + t").first_value() == 3);
+  CHECK(TimeFunction::key_frames({0, 1, 2}, {1, 5, 2}).first_value() == 1);
+  const auto growing = std::make_shared<pliant::LinearKeys>(std::vector<double>{0}, std::vector<double>{4});
+  const TimeFunction function(growing);
+  growing->append(1, 9);
+  CHECK(function.first_value() == 4);
+  CHECK(function.first_value() == function.value(0));
 }
 
 TEST_CASE("key frames are interpolated, and the spline is twice continuously differentiable inside") {

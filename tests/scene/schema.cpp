@@ -266,14 +266,16 @@ TEST_CASE("alternatives: the type of the value selects one, and only its errors 
         "s.json:2:58: error: /springs/0/stiffness: true; expected a number (N/m), a formula of t in quotes, "
         "or key frames "
         "{\"t\": [...], \"y\": [...]}\n");
-  CHECK(spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": {}") ==
-        "s.json:2:58: error: /springs/0/stiffness: missing key \"t\"; expected an array of one or "
-        "more increasing numbers (s), for example \"t\": [0, 1, "
-        "2]\n"
+  CHECK(
+      spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": {}") ==
+      "s.json:2:58: error: /springs/0/stiffness: an empty object; expected a number (N/m), a formula of t in "
+      "quotes, or key frames {\"t\": [...], \"y\": [...]}\n");
+  CHECK(spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": {\"t\": [0]}") ==
         "s.json:2:58: error: /springs/0/stiffness: missing key \"y\"; expected an array of one or more "
-        "numbers, "
-        "for "
-        "example \"y\": [0, 0.5, 0]\n");
+        "numbers, for example \"y\": [0, 0.5, 0]\n");
+  CHECK(spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": {\"sum\": 1}") ==
+        "s.json:2:66: error: /springs/0/stiffness/sum: 1; expected an array of one or more numbers, "
+        "formulas of t in quotes, or key frames; did you mean [1]?\n");
   CHECK(spring_faults(at + "\"to\": \"up\"") ==
         "s.json:2:34: error: /springs/0/to: \"up\"; expected [x, y, z] of numbers (m) or formulas of t in "
         "quotes, or key "

@@ -133,7 +133,7 @@ def scaled(value, factor, units):
         return f"{factor!r} * ({SIGNAL.sub(in_old_units, value)})"
     if isinstance(value, list):
         return [scaled(entry, factor, units) for entry in value]
-    if isinstance(value, dict):  # key frames
+    if isinstance(value, dict):  # key frames or a sum
         factors = {"t": units.time, "end_rates": factor / units.time}
         return {key: scaled(entry, factors.get(key, factor), units) for key, entry in value.items()}
     return value * factor

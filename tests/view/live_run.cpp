@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include <pliant/io/frame_meshes.h>
 #include <pliant/scene/read_scene.h>
 
 #include "catch.h"
@@ -163,6 +164,26 @@ TEST_CASE("a step that fails stops a live run, and a reset starts it again") {
   wait_until(run, [](const Snapshot& now) { return !now.failure.empty() && !now.running; });
   run.reset();
   wait_until(run, [](const Snapshot& now) { return now.failure.empty() && now.state.time() == 0; });
+}
+
+TEST_CASE("meshes of a part are made while another thread adds keys to its rest value") {
+  Diagnostics diagnostics;
+  const std::unique_ptr<Scene> scene = parse_scene("scene", R"({"time": {"step": 0.001},
+    "parts": [{"name": "ball", "shape": "ellipsoid", "parameters": {"a1": {"rest": 2, "stiffness": 1}}}]})",
+                                                   {}, diagnostics);
+  const auto path = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{2});
+  scene->body.parts().front()->rest("a1", TimeFunction(path));
+  const Model model(scene->body);
+  std::thread other([&path] {
+    for (int i = 1; i <= 100000; ++i) path->append(i, 2.0 + i);
+  });
+  std::vector<double> rests;
+  for (int i = 0; i < 20; ++i) {
+    const FrameMeshes meshes(*scene, model);
+    rests.push_back(model.parts().front().part->parameters().rest().b[0]);
+  }
+  other.join();
+  CHECK(rests == std::vector<double>(20, 2));
 }
 
 }  // namespace live_run_test

@@ -247,6 +247,66 @@ TEST_CASE("changed gravity is repeated to the last bit") {
   check_replay(hung_scene(R"({"step": 0.002, "integrator": "rk4"})"), 40, change_islands);
 }
 
+TEST_CASE(
+    "gravity that is added to a changing one is repeated to the last bit, also by a scene that was saved") {
+  const std::string start = R"({"gravity": )", end = R"(, "time": {"tolerance": 1e-6}, "parts": [
+    {"name": "egg", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}}]})";
+  const std::string by_components = R"json([0, "sin(t)", {"t": [0, 1], "y": [0, -9]}])json",
+                    by_points = R"({"t": [0, 0.2, 1], "points": [[0, 0, 0], [1, 0, 0], [0, 0, -9]]})",
+                    by_sums = R"json([{"sum": ["t", 1, "2 * t"]}, 0, "-t"])json";
+  const auto change = [](LiveSimulation& live, int k) {
+    if (k == 10) live.set_gravity({1, 0, -3});
+    if (k == 25) live.set_gravity({0, 0, 0});
+  };
+  for (const std::string& gravity : {by_components, by_points, by_sums}) {
+    CAPTURE(gravity);
+    check_replay(start + gravity + end, 40, change);
+    const std::unique_ptr<Scene> scene = parse(start + gravity + end);
+    const Vec3<double> before = scene->body.gravity_at(0.4);
+    LiveSimulation live(*scene);
+    live.set_gravity({0, 2, 0});
+    for (int k = 0; k < 5; ++k) live.advance();
+    const std::string saved = saved_scene(live, ".", ".");
+    CHECK(parse(saved)->body.gravity_at(0.4).isApprox(before + Vec3<double>(0, 2, 0), 1e-15));
+    check_replay(saved, 40, change);  // changed once more
+    live.reset();
+    CHECK(scene->body.gravity_at(0.4) == before);
+  }
+}
+
+TEST_CASE("changed stiffnesses of drives of parameters are repeated to the last bit, and close the balance") {
+  const std::string part = R"({"name": "bar", "shape": "box", "deformations": ["bend"],
+    "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "bend.angle": {"rest": 0, "initial": 0.2, "drive": )";
+  for (const char* drive :
+       {R"({"target": 0, "stiffness": 300})", R"({"target": "0.2 * t", "stiffness": 300})"}) {
+    CAPTURE(drive);
+    for (const char* time : {R"({"tolerance": 1e-8})", R"({"step": 0.001, "integrator": "rk4"})"})
+      check_replay(std::string(R"({"gravity": [0, 0, 0], "time": )") + time + R"(, "parts": [)" + part +
+                       drive + "}}}]}",
+                   40, [](LiveSimulation& live, int k) {
+                     REQUIRE(live.drive_stiffnesses().size() == 1);
+                     CHECK(live.parameter_stiffnesses().empty());
+                     if (k == 10) live.set_drive_stiffness(0, 900);
+                     if (k == 25) live.set_drive_stiffness(0, 100);
+                     CHECK_THROWS_WITH(live.set_drive_stiffness(0, -1), test::has_text("bar.bend.angle"));
+                     CHECK(std::abs(live.ledger().balance) <= 1e-6 * 6);  // of 6 J
+                   });
+  }
+  const std::unique_ptr<Scene> scene =
+      parse(R"({"gravity": [0, 0, 0], "time": {"step": 0.01, "integrator": "rk4"},
+    "parts": [)" +
+            part + R"({"target": 0.1, "stiffness": 300}}}}]})");
+  LiveSimulation live(*scene);
+  const double most = live.drive_stiffnesses()[0].most;
+  CHECK(most > 300);
+  live.set_drive_stiffness(0, most);
+  for (int k = 0; k < 100; ++k) live.advance();
+  CHECK(live.simulation().state().v.cwiseAbs().maxCoeff() < 100);
+  live.reset();
+  CHECK(live.drive_stiffnesses()[0].next == 300);
+  CHECK(scene->body.drives()[0]->stiffness.constant() == 300);
+}
+
 TEST_CASE("changed rest values are repeated to the last bit") {
   check_replay(kBar, 60, [](LiveSimulation& live, int k) {
     REQUIRE(live.rest_values().size() == 1);

@@ -30,7 +30,7 @@ struct Kink {
 /// A scalar function of time t (s). Copies are cheap: they share the spline or the formula.
 class TimeFunction {
  public:
-  TimeFunction(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor)
+  TimeFunction(double constant = 0) : first_value_(constant) {}  // NOLINT(google-explicit-constructor)
 
   /// Returns the cubic spline through the keys (t_i, y_i) with natural ends (second derivative zero). The
   /// spline is twice continuously differentiable from the first key to the last. Before the first key and
@@ -47,8 +47,11 @@ class TimeFunction {
   static TimeFunction formula(const std::string& text);
 
   /// Returns the value and the first and second time derivative at t (s).
-  Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(constant_); }
+  Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(first_value_); }
   double value(double t) const { return at(t).v; }
+  /// Returns the value at time 0, computed when the function was made. It may be read while another thread
+  /// adds keys to the function (LinearKeys).
+  double first_value() const { return first_value_; }
   bool is_constant() const { return impl_ == nullptr; }
   /// Returns the first kink in the interval (after, until] (s), or a Kink of infinite time. For a formula,
   /// the search compares the branches of the formula at 5 times of the interval, the ends included. It can
@@ -63,10 +66,11 @@ class TimeFunction {
     virtual Taylor2<double> at(double t) const = 0;
     virtual Kink first_kink(double /*after*/, double /*until*/) const { return {}; }
   };
-  explicit TimeFunction(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  explicit TimeFunction(std::shared_ptr<const Impl> impl)
+      : first_value_(impl->at(0).v), impl_(std::move(impl)) {}
 
  private:
-  double constant_ = 0;
+  double first_value_;  // of a constant: its value
   std::shared_ptr<const Impl> impl_;
 };
 

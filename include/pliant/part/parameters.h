@@ -27,7 +27,7 @@ struct Parameter {
   bool initial_given = false, limits_given = false;  ///< whether the user set `initial`, and `limits`
 
   /// The rest value at time 0.
-  double rest_value() const { return rest.value(0); }
+  double rest_value() const { return rest.first_value(); }
 };
 
 /// Values and rates of all parameters of a part, with scalar P.

@@ -1,5 +1,6 @@
-// The JSON value of a function of time: a number, a formula of t in quotes, or key frames {"t": [...], "y":
-// [...]} with optional "end_rates". In the formula of a function of time and state, names are allowed, too.
+// The JSON value of a function of time: a number, a formula of t in quotes, key frames {"t": [...], "y":
+// [...]} with optional "end_rates", or a sum {"sum": [...]} of such functions. In the formula of a function
+// of time and state, names are allowed, too.
 #pragma once
 
 #include <string>

@@ -70,6 +70,17 @@ struct ParameterStiffness {
   double next;                        ///< value at the end of the next interval, that of the servo included
 };
 
+/// The constant stiffness of a drive of a parameter, which the user can change.
+struct DriveStiffness {
+  Drive* drive;
+  const Part* part;
+  std::string parameter;
+  double first;                      ///< value in the scene, N/m or N m
+  double most;                       ///< fixed steps are stable up to this value, at most 10 times `first`
+  std::shared_ptr<LinearKeys> path;  ///< the values so far; nullptr if the user has not changed the stiffness
+  double next;                       ///< value at the end of the next interval
+};
+
 /// The stiffness of the local deformation of a part, which the user can change by a factor of all its laws
 /// (PartDescription::scale_local).
 struct LocalStiffness {
@@ -119,9 +130,11 @@ class LiveSimulation {
   void release();
   /// Whether the last drag has not ended.
   bool is_dragging() const;
-  /// Changes gravity (m/s^2, world) linearly within the next interval. Throws std::invalid_argument if the
-  /// gravity of the scene changes in time.
+  /// Changes gravity (m/s^2, world) linearly within the next interval. If the gravity of the scene changes in
+  /// time, the value is added to it.
   void set_gravity(const Vec3<double>& gravity);
+  /// The gravity of the scene, if it changes in time.
+  const std::optional<TimeVector>& changing_gravity() const { return changing_gravity_; }
 
   /// The rest values of moving parts that are constant in the scene and have a stiffness. Their order does
   /// not change.
@@ -147,6 +160,14 @@ class LiveSimulation {
   /// std::invalid_argument for a value below ParameterStiffness::least, or not finite.
   void set_parameter_stiffness(std::size_t i, double value);
 
+  /// The stiffnesses of the drives of parameters that are constant and positive in the scene. Left out are
+  /// the same parts as above. The order does not change.
+  const std::vector<DriveStiffness>& drive_stiffnesses() const { return drive_stiffnesses_; }
+  /// Changes the stiffness of a drive linearly within the next interval. i: its number in
+  /// drive_stiffnesses(); value: N/m or N m. From then on the energy of the drive is work of actuation.
+  /// Throws std::invalid_argument for a value that is negative or not finite.
+  void set_drive_stiffness(std::size_t i, double value);
+
   /// The stiffnesses of the local deformation of moving parts that have no factor in the scene. A part whose
   /// fixed steps would be unstable with another factor is left out. The order does not change.
   const std::vector<LocalStiffness>& local_stiffnesses() const { return local_stiffnesses_; }
@@ -157,13 +178,15 @@ class LiveSimulation {
 
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
-  /// The path of gravity; nullptr if the user has not changed it.
+  /// The path of gravity, or of what the user added to changing_gravity(); nullptr if the user has not
+  /// changed it.
   const GrowingPath* gravity() const { return gravity_.get(); }
 
  private:
   void free_rest_values();
   void find_stiffnesses();
   void find_parameter_stiffnesses();
+  void find_drive_stiffnesses();
   void bound_stiffnesses();
   void free_local_stiffnesses();
   void bound_local_stiffnesses();
@@ -182,10 +205,12 @@ class LiveSimulation {
   std::optional<StableStiffness> stable_;  // set by the constructor
   std::int64_t intervals_ = 0;
   std::vector<Drag> drags_;
+  const std::optional<TimeVector> changing_gravity_;
   std::unique_ptr<GrowingPath> gravity_;
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
   std::vector<ParameterStiffness> parameter_stiffnesses_;
+  std::vector<DriveStiffness> drive_stiffnesses_;
   std::vector<LocalStiffness> local_stiffnesses_;
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };

@@ -50,13 +50,14 @@ LiveMotion::LiveMotion(Scene& scene, const ViewOptions& options)
       points_(scene, model_),
       shown_(scene, model_),
       snapshot_(run_.snapshot()),
-      gravity_is_free_(!scene.body.changing_gravity),
-      first_gravity_(scene.body.gravity_at(0)) {
+      adds_gravity_(scene.body.changing_gravity.has_value()),
+      first_gravity_(adds_gravity_ ? Vec3<double>(Vec3<double>::Zero()) : scene.body.gravity) {
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
   run_.wait_for([&](LiveSimulation& simulation) {
     rest_values_ = simulation.rest_values();
     stiffnesses_ = simulation.stiffnesses();
     parameter_stiffnesses_ = simulation.parameter_stiffnesses();
+    drive_stiffnesses_ = simulation.drive_stiffnesses();
     local_stiffnesses_ = simulation.local_stiffnesses();
   });
   show_again();
@@ -122,6 +123,7 @@ void LiveMotion::reset() {
   for (RestValue& rest : rest_values_) rest.next = rest.first;
   for (SpringStiffness& stiffness : stiffnesses_) stiffness.next = stiffness.first;
   for (ParameterStiffness& stiffness : parameter_stiffnesses_) stiffness.next = stiffness.first;
+  for (DriveStiffness& stiffness : drive_stiffnesses_) stiffness.next = stiffness.first;
   for (LocalStiffness& stiffness : local_stiffnesses_) stiffness.next = 1;
   for (int i = 0; i < 3; ++i) gravity_[i] = static_cast<float>(first_gravity_[i]);
 }
@@ -132,8 +134,7 @@ void LiveMotion::color_by_strain(bool on) {
   else
     scene_->coloring.reset();
   highest_ = 0;
-  // The rest values of the parts must not change meanwhile.
-  run_.wait_for([&](LiveSimulation&) { shown_.color_again(); });
+  shown_.color_again();
   show_again();
 }
 
@@ -188,12 +189,13 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   ImGui::PushItemWidth(kSliderWidth);
   ImGui::SliderFloat("drag stiffness", &drag_strength_, -2, 3, "10^%.1f");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("factor of the stiffness of the next drag");
-  if (gravity_is_free_ && ImGui::SliderFloat3("gravity", gravity_, -20, 20, "%.1f")) {
+  if (ImGui::SliderFloat3(adds_gravity_ ? "added gravity" : "gravity", gravity_, -20, 20, "%.1f")) {
     const Vec3<double> wanted(gravity_[0], gravity_[1], gravity_[2]);
     run_.post([wanted](LiveSimulation& simulation) { simulation.set_gravity(wanted); });
   }
   add_rest_values(selected);
   add_parameter_stiffnesses(selected);
+  add_drive_stiffnesses(selected);
   add_local_stiffnesses(selected);
   add_stiffnesses(selected);
   ImGui::PopItemWidth();
@@ -238,6 +240,23 @@ void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
     stiffness.next = std::clamp<double>(value, stiffness.least, stiffness.most);  // the value may be rounded
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_parameter_stiffness(i, wanted);
+    });
+  }
+}
+
+/// Adds a slider for the stiffness of each drive of a parameter of a part, from a tenth of its first value to
+/// the largest one with stable steps.
+void LiveMotion::add_drive_stiffnesses(const std::string& part) {
+  for (std::size_t i = 0; i < drive_stiffnesses_.size(); ++i) {
+    DriveStiffness& stiffness = drive_stiffnesses_[i];
+    if (stiffness.part->name() != part) continue;
+    auto value = static_cast<float>(stiffness.next);
+    if (!add_slider("drive of " + stiffness.parameter, value, 0.1f * static_cast<float>(stiffness.first),
+                    static_cast<float>(stiffness.most), "%.4g", ImGuiSliderFlags_Logarithmic))
+      continue;
+    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
+    run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
+      simulation.set_drive_stiffness(i, wanted);
     });
   }
 }

@@ -40,6 +40,7 @@ class LiveMotion final : public Motion {
   void add_rest_values(const std::string& part);
   void add_stiffnesses(const std::string& part);
   void add_parameter_stiffnesses(const std::string& part);
+  void add_drive_stiffnesses(const std::string& part);
   void add_local_stiffnesses(const std::string& part);
 
   Scene* scene_;
@@ -48,6 +49,7 @@ class LiveMotion final : public Motion {
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
   std::vector<ParameterStiffness> parameter_stiffnesses_;
+  std::vector<DriveStiffness> drive_stiffnesses_;
   std::vector<LocalStiffness> local_stiffnesses_;
   Model model_;  // of the picture; the simulation has its own, which changes with every drag
   SurfacePoints points_;
@@ -55,8 +57,8 @@ class LiveMotion final : public Motion {
   std::vector<TrackLine> tracks_;
   double track_time_ = -1;  // of the last point of the tracks, s
   std::shared_ptr<const Snapshot> snapshot_;
-  bool plays_ = false, fast_ = false, gravity_is_free_;
-  Vec3<double> first_gravity_;            // m/s^2
+  bool plays_ = false, fast_ = false, adds_gravity_;
+  Vec3<double> first_gravity_;            // m/s^2; 0 if the user's gravity is added to that of the scene
   float drag_strength_ = 0, gravity_[3];  // logarithm to base 10 of the factor of the stiffness; m/s^2
   ForceLines forces_;
   double highest_ = 0, size_ = 1;  // of the strain so far; of the scene at time 0, m
