@@ -29,11 +29,12 @@ namespace fs = std::filesystem;
 using pliant::JointMode;
 using pliant::PartModel;
 using pliant::Simulation;
+using pliant::Vec3;
 using pliant::VecX;
 
 namespace {
 
-const std::vector<std::string> kRigid{"bowl", "cradle", "dominoes", "slope", "tower"},
+const std::vector<std::string> kRigid{"bowl", "cradle", "dominoes", "roly_poly", "slope", "tower"},
     kSoft{"balloons", "springboard"}, kJointed{"dragonfly", "snowman"};
 
 /// Runs a scene to its end, and checks the overlaps after every step. after_step: called with the simulation
@@ -121,6 +122,23 @@ TEST_CASE("every scene with contact is in one of the lists of this file") {
 TEST_CASE("rigid parts of the scenes never overlap by more than a thousandth of their size",
           "[contact][long]") {
   for (const std::string& name : kRigid) CHECK(run_scene(name, [](Simulation&) {}) > 0);
+}
+
+TEST_CASE("the eggs of roly_poly come to rest where their centres of mass are lowest", "[contact][long]") {
+  // The centre of mass of an egg with the density 1 + k z is at z_m = k a3^2 / 5. At the angle theta between
+  // the axis of the egg and the vertical, its height is sqrt(a1^2 + (a3^2 - a1^2) cos^2 theta) + z_m cos
+  // theta.
+  const double a1 = 0.2, a3 = 0.25, z_m = -3.8 * a3 * a3 / 5, excess = a3 * a3 - a1 * a1,
+               slant = a1 / std::sqrt(excess * excess / (z_m * z_m) - excess);
+  Vec3<double> up;
+  run_scene("roly_poly", [&](const Simulation& simulation) {
+    for (int i = 0; i < 3; ++i)
+      up[i] = (simulation.model().orientation(simulation.state(), i) * Vec3<double>::UnitZ()).z();
+  });
+  CAPTURE(up, slant);
+  CHECK(up[0] == Approx(0).margin(1e-3));
+  CHECK(up[1] == Approx(slant).margin(1e-3));
+  CHECK(up[2] == Approx(1).margin(1e-3));
 }
 
 TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[contact][long]") {

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <pliant/body/advance.h>
 #include <pliant/body/speed_scale.h>
 #include <pliant/contact/contact_pairs.h>
+#include <pliant/contact/damping_work.h>
 #include <pliant/contact/load_work.h>
 #include <pliant/contact/touched_parts.h>
 #include <pliant/math/header_only.h>
@@ -244,12 +246,16 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   ContactProblem problem(dynamics_.model(), state, step.work, contacts, &before);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
-  // follows a prescribed path, or if the impulse acts at one instant. At nodes of a mesh it is not exact
-  // either, because elastic forces are not constant. Then Work::contact, or Work::anchors for a prescribed
-  // path, is corrected: the works of this resolution add up to the change of the energy of the touched parts.
+  // follows a prescribed path, or if the impulse acts at one instant. At nodes of a mesh, and for parts with
+  // damping, it is not exact either, because elastic and damping forces are not constant. Then Work::contact,
+  // or Work::anchors for a prescribed path, is corrected: the works of this resolution add up to the change
+  // of the energy of the touched parts.
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state,
              at_nodes = std::any_of(contacts.begin(), contacts.end(), is_at_nodes);
-  const bool by_energy = driven || instant || state.at_limit != before.at_limit ||
+  std::optional<DampingWork> damping;
+  if (motion.force_time < h && !at_nodes) damping.emplace(dynamics_, before, state, parts, t, h);
+  const bool damped = damping && damping->acts();
+  const bool by_energy = driven || instant || damped || state.at_limit != before.at_limit ||
                          state.joints != before.joints || (at_nodes && motion.force_time < h);
   // Methods with a reach of 1 conserve the energy at the positions half a step earlier, and the work of
   // solve() is that of impulses which displace for the whole step (README.md). At nodes, Work::contact gets
@@ -280,6 +286,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   // is already zero for a resting part, and includes displacements for h seconds.
   if (motion.force_time < h || by_displacement)
     state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
+  if (damped) damping->correct(state);
   if (h > 0 && motion.separates) separate_overlaps(step);
   project_limits(step);
   if (by_energy || by_displacement)

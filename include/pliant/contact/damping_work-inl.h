@@ -1,0 +1,120 @@
+// Function bodies of damping_work.h: Simpson's rule for a power that is quadratic in velocities that are
+// linear in time,
+//   W = h / 6 (P(v_0) + 4 P((v_0 + v_1) / 2) + P(v_1)).
+// P(v_0) is the same with and without impulses.
+#pragma once
+
+#include <pliant/contact/damping_work.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pliant/body/stages/loads.h>
+#include <pliant/body/stages/part_stages.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace damping_work {
+
+/// Factors of P in the middle and at the end of a motion of the formula above, without h.
+struct Weights {
+  double middle, end;
+};
+inline constexpr Weights kLinear{2.0 / 3, 1.0 / 6};
+
+/// Returns the factors for velocities that drag changes. x: nu h.
+inline Weights of_drag(double x) {
+  constexpr double small = 1e-3;  // the formulas lose digits below it; the series has an error of x^2 / 100
+  if (x < small) return {kLinear.middle, kLinear.end + x / 12};
+  const double relaxed = -std::expm1(-x);
+  const double m_1 = 1 / relaxed - 1 / x,
+               m_2 = (1 - 2 * relaxed / x - std::expm1(-2 * x) / (2 * x)) / (relaxed * relaxed);
+  return {4 * (m_1 - m_2), 2 * m_2 - m_1};
+}
+
+}  // namespace damping_work
+
+PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const State& before, const State& free,
+                                       const std::vector<int>& parts, double t, double h)
+    : dynamics_(dynamics), v_before_(before.v), q_(free.q), t_(t), h_(h) {
+  for (const int i : parts) {
+    const PartModel& m = dynamics.model().parts()[at(i)];
+    const bool damped = m.n_s > 0 && (m.part->alpha() > 0 || m.part->beta() > 0);
+    if (m.local == nullptr && (m.drag > 0 || damped)) damped_.push_back(i);
+  }
+  find_dampers(parts);
+  if (!acts()) return;
+  work_.inputs = free.inputs;
+  work_.parts.resize(dynamics.model().parts().size());
+  without_impulses_ = works(free.v);
+}
+
+/// Finds the parts that the evaluation of the dampers needs, if one of them is at a part that impulses move.
+PLIANT_INLINE void DampingWork::find_dampers(const std::vector<int>& moved) {
+  const Model& model = dynamics_.model();
+  bool found = false;
+  const auto add = [&](const StateFunction& damping, std::vector<int> parts,
+                       const std::vector<const FunctionModel*>& functions) {
+    found =
+        found || ((!damping.is_constant() || damping.constant() != 0) &&
+                  std::find_first_of(parts.begin(), parts.end(), moved.begin(), moved.end()) != parts.end());
+    for (const FunctionModel* function : functions) model.append_parts(*function, parts);
+    at_dampers_.insert(at_dampers_.end(), parts.begin(), parts.end());
+  };
+  for (const SpringModel& s : model.springs()) {
+    std::vector<const FunctionModel*> functions;
+    for (const FunctionModel& function : s.functions) functions.push_back(&function);
+    add(s.spring->damping, {s.a.part, s.b.part}, functions);
+  }
+  for (const DriveModel& m : model.drives()) {
+    if (!detail::stores_energy(model, m)) continue;
+    std::vector<int> parts;
+    model.append_parts(m.on, parts);
+    add(m.drive->damping, std::move(parts), {});
+  }
+  if (!found) at_dampers_.clear();
+  std::sort(at_dampers_.begin(), at_dampers_.end());
+  at_dampers_.erase(std::unique(at_dampers_.begin(), at_dampers_.end()), at_dampers_.end());
+  at_dampers_.erase(std::remove(at_dampers_.begin(), at_dampers_.end(), -1), at_dampers_.end());
+}
+
+/// Returns the works of the formula above without the terms of v_0, at the positions at the end of the motion
+/// without impulses.
+PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_end) {
+  const Model& model = dynamics_.model();
+  Works sum = Works::Zero();
+  for (const bool middle : {true, false}) {
+    const VecX<double> v = middle ? VecX<double>(0.5 * (v_before_ + v_end)) : v_end;
+    const auto factor = [&](const damping_work::Weights& weights) {
+      return h_ * (middle ? weights.middle : weights.end);
+    };
+    const Evaluation<double> e{dynamics_, t_, q_, v, work_};
+    for (const int i : damped_) {
+      const PartModel& m = model.parts()[at(i)];
+      PartWorkspace<double>& w = work_.parts[at(i)];
+      dynamics_.evaluate_frame(t_, q_, v, i, work_);
+      w.power.setZero();
+      detail::evaluate_own_forces(m, e.gravity, t_, w, nullptr);
+      sum[0] += factor(damping_work::kLinear) * w.power[static_cast<int>(Work::damping)];
+      sum[1] += factor(damping_work::of_drag(m.drag * h_)) * w.power[static_cast<int>(Work::drag)];
+    }
+    if (at_dampers_.empty()) continue;
+    for (const int i : at_dampers_)
+      detail::evaluate_positions<double>(model.parts()[at(i)], t_, q_, v, work_.parts[at(i)]);
+    detail::forget_coordinates(e);
+    sum[2] += factor(damping_work::kLinear) * detail::damper_power(e);
+  }
+  return sum;
+}
+
+PLIANT_INLINE void DampingWork::correct(State& after) {
+  if (!acts()) return;
+  const Works change = works(after.v) - without_impulses_;
+  after.work[static_cast<int>(Work::damping)] += change[0];
+  after.work[static_cast<int>(Work::drag)] += change[1];
+  after.work[static_cast<int>(Work::spring_damping)] += change[2];
+}
+
+}  // namespace pliant
