@@ -10,7 +10,6 @@
 #include "collision/hull/hull.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 namespace pliant {
 

@@ -35,4 +35,12 @@ VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b) {
   return scale.cwiseProduct((A * scale.asDiagonal()).colPivHouseholderQr().solve(b));
 }
 
+VecX<double> least_norm(const MatX<double>& A, const VecX<double>& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
+}
+
+MatX<double> pseudo_inverse(const MatX<double>& A) {
+  return A.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 }  // namespace pliant

@@ -20,6 +20,11 @@ Eigenpairs symmetric_eigenpairs(const Eigen::Ref<const MatX<double>>& A,
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+ComplexEigenpairs eigenpairs(const Eigen::Ref<const MatX<double>>& A) {
+  const Eigen::EigenSolver<MatX<double>> solver(A);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 VecX<std::complex<double>> eigenvalues(const Eigen::Ref<const MatX<double>>& A) {
   return Eigen::EigenSolver<MatX<double>>(A, false).eigenvalues();
 }

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
+#include <pliant/math/eigenvalues.h>
 #include <pliant/math/index.h>
 #include <pliant/part/local/nodal_deformation.h>
 
@@ -158,14 +157,14 @@ std::vector<FastMotion> FastMotions::motions() const {
   std::vector<FastMotion> all;
   const Eigen::Index n = H_.cols();
   if (n == 0 || !H_.allFinite()) return all;
-  const Eigen::EigenSolver<MatX<double>> solver(H_.topRows(n));
-  const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const ComplexEigenpairs pairs = eigenpairs(H_.topRows(n));
+  const double largest = pairs.values.cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < n; ++i) {
     FastMotion motion;
-    motion.value = solver.eigenvalues()[i];
+    motion.value = pairs.values[i];
     // Motions without stiffness and damping are double roots 0, which errors split into small numbers.
     if (!(std::abs(motion.value) > std::sqrt(fast_motion::kVanished) * largest)) continue;
-    motion.combination = solver.eigenvectors().col(i).normalized();
+    motion.combination = pairs.vectors.col(i).normalized();
     motion.residual = H_(n, n - 1) * std::abs(motion.combination[n - 1]) / std::abs(motion.value);
     all.push_back(motion);
   }

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/QR>
-
+#include <pliant/math/column_basis.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/local/local_deformation.h>
 #include <pliant/simulate/stable_step.h>
@@ -59,9 +58,7 @@ struct PlacedPart {
 
   const PartWorkspace<double>& part() const { return work.parts[number]; }
   /// Returns the inverse of M over (c, theta, q_s) in the body frame, 0 for coordinates without inertia.
-  MatX<double> inverse() const {
-    return mass_matrix(part()).completeOrthogonalDecomposition().pseudoInverse();
-  }
+  MatX<double> inverse() const { return pseudo_inverse(mass_matrix(part())); }
 };
 
 PlacedPart place(const Simulation& simulation, const Part& part) {

@@ -23,4 +23,9 @@ MatX<double> complement_basis(const MatX<double>& A, double dependent);
 /// Returns an x that minimises |A x - b|. Only one x does so if the columns of A are independent.
 VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b);
 
+/// Returns the x of least norm among those that minimise |A x - b|, for A of any rank.
+VecX<double> least_norm(const MatX<double>& A, const VecX<double>& b);
+/// Returns the pseudo-inverse of A, for A of any rank.
+MatX<double> pseudo_inverse(const MatX<double>& A);
+
 }  // namespace pliant

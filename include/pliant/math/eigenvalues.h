@@ -24,6 +24,12 @@ VecX<double> symmetric_eigenvalues(const Eigen::Ref<const MatX<double>>& A);
 Eigenpairs symmetric_eigenpairs(const Eigen::Ref<const MatX<double>>& A,
                                 const Eigen::Ref<const MatX<double>>& B);
 
+/// Eigenvalues and eigenvectors v of any square matrix: A v = value v with |v| = 1, in no particular order.
+struct ComplexEigenpairs {
+  VecX<std::complex<double>> values;
+  MatX<std::complex<double>> vectors;  ///< one eigenvector per column
+};
+ComplexEigenpairs eigenpairs(const Eigen::Ref<const MatX<double>>& A);
 /// Returns the eigenvalues of any square matrix, in no particular order.
 VecX<std::complex<double>> eigenvalues(const Eigen::Ref<const MatX<double>>& A);
 

@@ -93,14 +93,14 @@ class Formula {
   enum class Code : std::uint8_t {
     kNumber,
     kTime,
-    kVariable,  ///< a named quantity; its number is the number of the instruction
+    kVariable,  ///< a named quantity; Instruction::number is its number
     kAdd,
     kSubtract,
     kMultiply,
     kDivide,
     kNegate,
-    kPower,          ///< a variable base and a variable exponent
-    kConstantPower,  ///< a constant exponent, the number of the instruction
+    kPower,          ///< any base and an exponent that is not constant
+    kConstantPower,  ///< any base and the constant exponent Instruction::number
     kSin,
     kCos,
     kTan,

@@ -5,7 +5,8 @@
 //   (   0    -n.y''   -y'^T P )
 //   ( P^T x' -P^T y'   -g     )
 // with a basis P of the plane normal to n. The distance is least at such a point if the block of s_a and s_b
-// is positive definite for all changes with x' ds_a = y' ds_b.
+// is positive definite for all changes with x' ds_a = y' ds_b. For a vertex and a face the condition is
+// 1 + g kappa > 0 instead, with both curvatures kappa of the face.
 #pragma once
 
 #include <algorithm>
@@ -47,9 +48,9 @@ class NormalSearch {
   Vec3<double> start(const Patch& a, const Patch& b) const;
   /// Returns the step from the middles of two patches with the normal n.
   NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
-  /// How a search ends: at a point with a common normal at which the distance is least; at another point, or
-  /// too far from its start; or without result. Then result.gap is about the last gap of the search, NaN if
-  /// there is none.
+  /// How a search ends. found: at a common normal at which the distance is least. none: at another common
+  /// normal, or too far from the middles of the patches. failed: it does not converge; result.gap is then the
+  /// last gap, NaN if there is none.
   enum class End { found, none, failed };
   /// Searches from the middles of two patches and the normal result.normal.
   End search(const Patch& a, const Patch& b, CommonNormal& result) const;
@@ -61,8 +62,8 @@ class NormalSearch {
     FeatureJet of_a, of_b;
     Vec3<double> normal;
   };
-  /// The system of equations for a step from a place. The unknowns are lengths along the tangents in sizes,
-  /// and the turn of the normal along two vectors, rad.
+  /// The system of equations for a step from a place. The unknowns are the moves of both points along
+  /// their unit tangents, divided by size_, and the turn of the normal along two vectors, rad.
   struct System {
     Eigen::Matrix<double, 6, 6> hessian;
     Vec<double, 6> residual;

@@ -1,6 +1,7 @@
 // Patches of the surface of a part, and a tree over them. The bound of a patch is a ball that contains its
-// points and a cone that contains their outward normals. Two patches can contain a common normal of two parts
-// only if their cones and the line between their balls agree.
+// points and a cone that contains their outward normals. A common normal n of two parts can join a patch of
+// each only if n is in the cone of one, -n is in that of the other, and n is along a line between their
+// balls.
 #pragma once
 
 #include <utility>

@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <pliant/local/solid/solid_mass.h>
 #include <pliant/local/solid/tetrahedron.h>

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <pliant/part/strain.h>
 

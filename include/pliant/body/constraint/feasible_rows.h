@@ -6,9 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include <pliant/body/constraint/group.h>
+#include <pliant/math/column_basis.h>
 #include <pliant/math/index.h>
 
 namespace pliant::detail {
@@ -59,11 +58,10 @@ class DependentRows {
     for (Eigen::Index r = 0; r < b.size(); ++r)
       if (!may_change[static_cast<std::size_t>(r)]) changeable.col(r).setZero();
     changeable = (changeable.array().abs() < kNoise).select(0, changeable);
-    const Eigen::CompleteOrthogonalDecomposition<MatX<double>> solver(changeable);
     for_each_value(b, [&](auto&& get) {
       VecX<double> value(b.size());
       for (Eigen::Index r = 0; r < b.size(); ++r) value[r] = get(b[r]);
-      const VecX<double> change = solver.solve(n_.transpose() * value);
+      const VecX<double> change = least_norm(changeable, n_.transpose() * value);
       for (Eigen::Index r = 0; r < b.size(); ++r) get(b[r]) -= change[r];
     });
   }

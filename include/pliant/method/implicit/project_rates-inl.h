@@ -8,10 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/group.h>
+#include <pliant/math/column_basis.h>
 #include <pliant/math/header_only.h>
 #include <pliant/project/projection.h>
 
@@ -58,7 +57,7 @@ void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pu
     b[k] = -group.value(pushed[static_cast<std::size_t>(k)], x);
     for (Eigen::Index i = 0; i < n; ++i) W(i, k) = group.value(pushed[static_cast<std::size_t>(i)], response);
   }
-  x += responses * W.completeOrthogonalDecomposition().solve(b);
+  x += responses * least_norm(W, b);
 }
 
 /// Projects the changes that the filter made to the rates of a group, and adds the corrections to v_dot.
