@@ -1,2 +1,4 @@
-// The library's instance of the function bodies in <pliant/simulate/simulation-inl.h>.
+// The library's instance of the function bodies in <pliant/simulate/simulation-inl.h> and
+// <pliant/simulate/controlled_step-inl.h>.
+#include <pliant/simulate/controlled_step-inl.h>
 #include <pliant/simulate/simulation-inl.h>

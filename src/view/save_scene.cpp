@@ -1,6 +1,8 @@
 #include <pliant/view/save_scene.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
@@ -81,6 +83,13 @@ void set_drive_stiffnesses(Json& document, const LiveSimulation& simulation) {
   }
 }
 
+/// Returns whether a gravity of a document changes in time.
+bool changes(const Json& gravity) {
+  return gravity.is_object() ||
+         (gravity.is_array() &&
+          std::any_of(gravity.begin(), gravity.end(), [](const Json& x) { return !x.is_number(); }));
+}
+
 /// Returns component i of a vector function of time in a document.
 Json component_of(const Json& vector, std::size_t i) {
   if (vector.is_array()) return vector[i];
@@ -97,6 +106,11 @@ void set_gravity(Json& document, const LiveSimulation& simulation) {
     document["gravity"] = key_frames_of(*simulation.gravity());
     return;
   }
+  if (!document.contains("gravity") || !changes(document["gravity"]))
+    throw std::invalid_argument(
+        "the scene cannot be saved: its gravity changes in time, but the gravity in its file does not; "
+        "expected "
+        "a scene whose gravity no program has changed");
   Json sums = Json::array();
   for (std::size_t i = 0; i < 3; ++i) {
     Json component = component_of(document["gravity"], i), terms = Json::array();

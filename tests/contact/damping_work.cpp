@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <pliant/contact/contact_stepping.h>
 
@@ -45,10 +46,16 @@ TEST_CASE("drag and dampers of a box that rests on a floor do no work") {
     Part& part = box_on_floor(body);
     body.spring("damper", point(part, kPi / 2, 0), world(0, 0, 1), 0, 40);
   };
+  const auto hinge_with_drive = [](MultiBody& body) {
+    // The box is held at one side and rests on the other one.
+    Part& part = box_on_floor(body).damping(0, 0, 5);
+    const Joint& hinge = body.hinge("hinge", world(-0.1, 0, 0.1), point(part, 0, kPi), {0, 1, 0});
+    body.drive("drive", hinge).damping = 0.5;
+  };
   const struct {
     const char* name;
     void (*build)(MultiBody&);
-  } cases[] = {{"drag", drag}, {"damper", damper}};
+  } cases[] = {{"drag", drag}, {"damper", damper}, {"hinge with drive", hinge_with_drive}};
   for (const char* method :
        {"semi_implicit_euler", "rk4", "implicit_midpoint", "dormand_prince", "dop853", "esdirk"})
     for (const auto& [name, build] : cases) {
@@ -88,6 +95,30 @@ TEST_CASE("the works of a box that slides against drag are those of the closed f
     CHECK(error < last / 10);
     last = error;
   }
+}
+
+TEST_CASE("the work of drag of a bouncing ball is the same for sequences of impacts and impacts at once") {
+  std::vector<double> works;
+  for (const ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential}) {
+    MultiBody body;
+    body.contact.impacts = order;
+    body.contact.restitution = 0.8;
+    body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+    // More than eight moving parts: impacts are not located in time.
+    for (int i = 0; i < 10; ++i)
+      body.add<Primitive<Sphere>>("ball" + std::to_string(i))
+          .rest({{"r", 0.1}})
+          .damping(0, 0, 0.5)
+          .place({0.5 * i, 0, 0.5 + 0.01 * i});
+    Simulation simulation(body, "rk4");
+    for (int i = 0; i < 1000; ++i) simulation.step(1e-3);
+    const Ledger ledger = simulation.ledger();
+    works.push_back(ledger.work[static_cast<int>(Work::drag)]);
+    CAPTURE(works, ledger.balance);
+    CHECK(works.back() < 0);
+    CHECK(std::abs(ledger.balance) < 1e-2 * std::abs(works.back()));
+  }
+  CHECK(works[0] == Approx(works[1]).epsilon(1e-3));
 }
 
 }  // namespace damping_work_test

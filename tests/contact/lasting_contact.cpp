@@ -117,7 +117,8 @@ TEST_CASE(
     return simulation.step_counters().steps;
   };
   rolling_steps(1e-3);
-  const auto rough = rolling_steps(1e-4), fine = rolling_steps(1e-6);
+  rolling_steps(1e-4);
+  const auto rough = rolling_steps(1e-5), fine = rolling_steps(1e-7);
   CHECK(fine < 12 * rough);
   CHECK(fine < 900);
 }
@@ -359,6 +360,41 @@ TEST_CASE("a part that a force presses on a floor without gravity needs no repea
   for (int i = 0; i < 200; ++i) simulation.step(2.5e-3);
   CHECK(simulation.state().q[2] == Approx(0.1).epsilon(1e-9));
   CHECK(simulation.step_counters().evaluations < 15 * 200);
+}
+
+TEST_CASE("a ball that rocks about its heavy side: errors fall with the tolerance, in few steps") {
+  // The centre of mass is at the distance d from the centre of the ball, which rolls without slip. At the
+  // angle theta, (I + m (r^2 + d^2 - 2 r d cos theta)) theta'' = -m d sin theta (g + r theta'^2), where I is
+  // the moment of inertia about the centre of mass.
+  constexpr double r = 0.2, d = 0.08, m = 10, I = 0.1, start = 1.2, end = 1.5;
+  double theta = start, rate = 0;
+  constexpr int n = 20000;
+  const auto acceleration = [&](double angle, double speed) {
+    return -m * d * std::sin(angle) * (kGravity + r * speed * speed) /
+           (I + m * (r * r + d * d - 2 * r * d * std::cos(angle)));
+  };
+  for (int i = 0; i < n; ++i) {
+    const double h = end / n, k1 = rate, l1 = acceleration(theta, rate), k2 = rate + 0.5 * h * l1,
+                 l2 = acceleration(theta + 0.5 * h * k1, k2), k3 = rate + 0.5 * h * l2,
+                 l3 = acceleration(theta + 0.5 * h * k2, k3), k4 = rate + h * l3,
+                 l4 = acceleration(theta + h * k3, k4);
+    theta += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    rate += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+  }
+  for (const double tolerance : {9e-5, 1e-5, 1e-6, 1e-7}) {
+    MultiBody body;
+    ball_on_floor(body, 2)
+        .rest({{"r", r}})
+        .inertia(m, Vec3<double>(I + m * d * d, I + m * d * d, I).asDiagonal(), {0, 0, -d})
+        .place({0, 0, r}, Eigen::Quaterniond(Eigen::AngleAxisd(start, Vec3<double>::UnitY())))
+        .velocity({0, 0, 0}, {0, 0, 0});
+    Simulation simulation(body, "dop853", 1, tolerance);
+    advance_to(simulation, end);
+    const double x = simulation.state().q[0], error = std::abs(x - r * (theta - start));
+    CAPTURE(tolerance, x, r * (theta - start), error, simulation.step_counters().steps);
+    CHECK(error < 10 * tolerance * r);
+    CHECK(static_cast<double>(simulation.step_counters().steps) < 110 * std::cbrt(1e-4 / tolerance));
+  }
 }
 
 }  // namespace lasting_contact_test

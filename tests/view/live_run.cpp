@@ -173,6 +173,7 @@ TEST_CASE("meshes of a part are made while another thread adds keys to its rest 
                                                    {}, diagnostics);
   const auto path = std::make_shared<LinearKeys>(std::vector<double>{0}, std::vector<double>{2});
   scene->body.parts().front()->rest("a1", TimeFunction(path));
+  scene->coloring = Coloring{};
   const Model model(scene->body);
   std::thread other([&path] {
     for (int i = 1; i <= 100000; ++i) path->append(i, 2.0 + i);

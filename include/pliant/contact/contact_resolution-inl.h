@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -39,6 +40,22 @@ inline State displaced_evenly(ContactProblem& problem, const Model& model, const
   problem.bound_shifts(time, 0);
   apply_solution(problem, model, work, state);
   return state;
+}
+
+/// Returns those parts of a list that are at no contact that rebounds: their velocities do not jump. Parts of
+/// an island jump together.
+inline std::vector<int> without_rebound(const Model& model, const std::vector<Contact>& contacts,
+                                        std::vector<int> parts) {
+  std::vector<Contact> rebounding;
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(rebounding),
+               [](const Contact& contact) { return contact.rebound > 0; });
+  if (rebounding.empty()) return parts;
+  const std::vector<int> jumping = parts_touched(model, rebounding);
+  parts.erase(
+      std::remove_if(parts.begin(), parts.end(),
+                     [&](int part) { return std::binary_search(jumping.begin(), jumping.end(), part); }),
+      parts.end());
+  return parts;
 }
 
 /// Returns the index in [first, last) of the position nearest to x, nearer than `within` (m) and not taken;
@@ -253,7 +270,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state,
              at_nodes = std::any_of(contacts.begin(), contacts.end(), is_at_nodes);
   std::optional<DampingWork> damping;
-  if (motion.force_time < h && !at_nodes) damping.emplace(dynamics_, before, state, parts, t, h);
+  if (!instant && motion.force_time < h && !at_nodes)
+    damping.emplace(dynamics_, before, state,
+                    contact_resolution::without_rebound(dynamics_.model(), contacts, parts), t, h);
   const bool damped = damping && damping->acts();
   const bool by_energy = driven || instant || damped || state.at_limit != before.at_limit ||
                          state.joints != before.joints || (at_nodes && motion.force_time < h);

@@ -48,13 +48,15 @@ class ContactStepping {
   /// Repeats a step with resting or unlocated contacts as two half steps. If both results agree in modes and
   /// contacts and the error is at most 1, extrapolates from both (Richardson). Impulses that stand for forces
   /// over a step have an error of O(h^2), which the difference of both results estimates; the error of the
-  /// extrapolation is O(h^3). If the step ended at an event, the halves locate the event themselves and are
-  /// not extrapolated. initial: the state at the start, with the length of the step before any event
-  /// shortened it. length: the actual length of the step, s. before: the counters before the step.
-  /// step.state: on input the state at the end of the step, on output that of the halves. Returns the larger
-  /// of two errors, in tolerances, and the length of the halves. The first is that of contact, the second
-  /// that of the method in the halves. If the bodies in contact were at rest and have no prescribed motion,
-  /// the error is 0 and the step is not repeated. If the halves fail, the error is infinite.
+  /// extrapolation is O(h^3). With a tolerance below step_doubling::kThirdsTolerance, the step is also
+  /// repeated in thirds, and the extrapolation from all three results has an error of O(h^4). If the step
+  /// ended at an event, the halves locate the event themselves and are not extrapolated. initial: the state
+  /// at the start, with the length of the step before any event shortened it. length: the actual length of
+  /// the step, s. before: the counters before the step. step.state: on input the state at the end of the
+  /// step, on output that of the last repetition. Returns the larger of two errors, in tolerances, and the
+  /// length of the last repetition. The first is that of contact, the second that of the method. If the
+  /// bodies in contact were at rest and have no prescribed motion, the error is 0 and the step is not
+  /// repeated. If a repetition fails, the error is infinite.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
                              const State& initial, double length, const StepCounters& before);
 
@@ -104,7 +106,7 @@ class ContactStepping {
   bool is_sequential() const { return dynamics_.model().body().contact.impacts == ImpactOrder::sequential; }
   void resolve(Motion& motion, Progress& progress);
 
-  /// A whole step that is compared with its two halves.
+  /// A whole step that is compared with its repetition in equal parts.
   struct Whole {
     const State state;                   ///< state at the end of the step
     const double length;                 ///< s
@@ -112,32 +114,52 @@ class ContactStepping {
     const std::size_t contacts;          ///< number of contacts that the step resolved
     const bool has_event;                ///< whether the step ended at an event
   };
-  struct Halves {
-    double first = 0, length = 0;     ///< lengths of the first half and of both, s
-    std::size_t first_contacts = 0;   ///< number of contacts that the first half resolved
+  /// A step that was repeated in equal parts, the last of which may be shorter or longer.
+  struct Fractions {
+    double length = 0;              ///< of all parts, s
+    bool even = true;               ///< whether all parts but the last had their full length
+    bool equal_contacts = true;     ///< whether all but the last resolved as many contacts as the whole step
+    std::size_t last_contacts = 0;  ///< number of the first contact of the last part in the record
     VecX<double> gravity_velocities;  ///< n_v: velocities by gravity of parts that lost a contact
     bool finite = false;
   };
-  Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial,
-                     double tolerance);
-  bool agree(const Whole& whole, const Halves& halves, bool has_event, const State& state) const;
-  double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
-                    double start, const State& state) const;
-  void include_openings(std::size_t first, double t, double h, State& state) const;
-  /// What two halves are extrapolated from.
-  struct Extrapolation {
-    State coarse;  ///< the state after the whole step; nodes may have the values of the halves
-    double share;  ///< 1, or less for a result nearer to the halves
+  Fractions step_fractions(int n, Integrator& method, StepContext& step, const Whole& whole,
+                           const State& initial, double tolerance);
+  bool agree(const Whole& whole, const Fractions& fractions, bool has_event, const State& state) const;
+  /// A difference of the coordinates and velocities of two results.
+  struct Difference {
+    VecX<double> q, v;
   };
-  State extrapolated(const State& halves, const Extrapolation& from, const std::vector<int>& parts) const;
-  void extrapolate(StepContext& step, const State& whole, const Extrapolation& from, std::size_t second,
+  double difference(const Whole& whole, const Fractions& fractions, bool agreed, const ErrorScale& scale,
+                    double start, const State& state) const;
+  double measure(const Difference& difference, double length, const Fractions& fractions, bool jumped,
+                 const ErrorScale& scale, const State& state) const;
+  /// Returns whether the step has ended at an event. before: the counters before the step.
+  bool has_event(const StepContext& step, const StepCounters& before) const {
+    return step.counters.impacts > before.impacts || at_friction_event_;
+  }
+  void restart_step(StepContext& step, const State& initial, const StepCounters& before);
+  /// A result with longer steps, from which the finest result is extrapolated.
+  struct Coarse {
+    State state;   ///< its coordinates and velocities; nodes may have the values of the finest result
+    double share;  ///< the finest result moves on by this share of its difference from the state
+    const State& computed;  ///< the unchanged result, with its works
+  };
+  StepError step_by_thirds(Integrator& method, StepContext& step, const ErrorScale& scale, const Whole& whole,
+                           const State& initial, const StepCounters& before, double error_of_halves);
+  void extrapolate_rigid(StepContext& step, const std::vector<Coarse>& from, const Fractions& finest,
+                         const State& initial);
+  void include_openings(std::size_t first, double t, double h, State& state) const;
+  State extrapolated(const State& finest, const std::vector<Coarse>& from,
+                     const std::vector<int>& parts) const;
+  void extrapolate(StepContext& step, const std::vector<Coarse>& from, std::size_t last,
                    const std::vector<int>& parts);
   bool has_deep_nodes(const State& state);
   bool copy_deep_nodes(double t, const State& full, const State& halves, State& coarse);
   void keep_momenta(double t, const std::vector<Vec3<double>>& momenta, const std::vector<int>& parts,
                     State& state);
-  Extrapolation soft_extrapolation(double t, const State& start, const State& halves, const State& whole,
-                                   const std::vector<int>& parts);
+  Coarse soft_extrapolation(double t, const State& start, const State& halves, const State& whole,
+                            const std::vector<int>& parts);
   /// Values at the start of a step that may be repeated.
   struct Before {
     State state;

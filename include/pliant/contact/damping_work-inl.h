@@ -38,7 +38,7 @@ inline Weights of_drag(double x) {
 
 PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const State& before, const State& free,
                                        const std::vector<int>& parts, double t, double h)
-    : dynamics_(dynamics), v_before_(before.v), q_(free.q), t_(t), h_(h) {
+    : dynamics_(dynamics), v_before_(before.v), t_(t), h_(h) {
   for (const int i : parts) {
     const PartModel& m = dynamics.model().parts()[at(i)];
     const bool damped = m.n_s > 0 && (m.part->alpha() > 0 || m.part->beta() > 0);
@@ -46,35 +46,33 @@ PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const State& be
   }
   find_dampers(parts);
   if (!acts()) return;
+  q_ = free.q;
   work_.inputs = free.inputs;
   work_.parts.resize(dynamics.model().parts().size());
   without_impulses_ = works(free.v);
 }
 
-/// Finds the parts that the evaluation of the dampers needs, if one of them is at a part that impulses move.
+/// Finds the dampers at parts that impulses move, and the parts that their evaluation needs.
 PLIANT_INLINE void DampingWork::find_dampers(const std::vector<int>& moved) {
   const Model& model = dynamics_.model();
-  bool found = false;
-  const auto add = [&](const StateFunction& damping, std::vector<int> parts,
-                       const std::vector<const FunctionModel*>& functions) {
-    found =
-        found || ((!damping.is_constant() || damping.constant() != 0) &&
-                  std::find_first_of(parts.begin(), parts.end(), moved.begin(), moved.end()) != parts.end());
-    for (const FunctionModel* function : functions) model.append_parts(*function, parts);
-    at_dampers_.insert(at_dampers_.end(), parts.begin(), parts.end());
+  const auto is_moved = [&](int part) { return std::binary_search(moved.begin(), moved.end(), part); };
+  const auto is_zero = [](const StateFunction& damping) {
+    return damping.is_constant() && damping.constant() == 0;
   };
   for (const SpringModel& s : model.springs()) {
-    std::vector<const FunctionModel*> functions;
-    for (const FunctionModel& function : s.functions) functions.push_back(&function);
-    add(s.spring->damping, {s.a.part, s.b.part}, functions);
+    if (is_zero(s.spring->damping) || !(is_moved(s.a.part) || is_moved(s.b.part))) continue;
+    springs_.push_back(&s);
+    at_dampers_.insert(at_dampers_.end(), {s.a.part, s.b.part});
+    for (const FunctionModel& function : s.functions) model.append_parts(function, at_dampers_);
   }
   for (const DriveModel& m : model.drives()) {
-    if (!detail::stores_energy(model, m)) continue;
+    if (is_zero(m.drive->damping) || !detail::stores_energy(model, m)) continue;
     std::vector<int> parts;
     model.append_parts(m.on, parts);
-    add(m.drive->damping, std::move(parts), {});
+    if (std::none_of(parts.begin(), parts.end(), is_moved)) continue;
+    drives_.push_back(&m);
+    at_dampers_.insert(at_dampers_.end(), parts.begin(), parts.end());
   }
-  if (!found) at_dampers_.clear();
   std::sort(at_dampers_.begin(), at_dampers_.end());
   at_dampers_.erase(std::unique(at_dampers_.begin(), at_dampers_.end()), at_dampers_.end());
   at_dampers_.erase(std::remove(at_dampers_.begin(), at_dampers_.end(), -1), at_dampers_.end());
@@ -104,7 +102,10 @@ PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_end) {
     for (const int i : at_dampers_)
       detail::evaluate_positions<double>(model.parts()[at(i)], t_, q_, v, work_.parts[at(i)]);
     detail::forget_coordinates(e);
-    sum[2] += factor(damping_work::kLinear) * detail::damper_power(e);
+    for (const SpringModel* spring : springs_)
+      sum[2] += factor(damping_work::kLinear) * detail::damper_power(e, *spring);
+    for (const DriveModel* drive : drives_)
+      sum[2] += factor(damping_work::kLinear) * detail::damper_power(e, *drive);
   }
   return sum;
 }

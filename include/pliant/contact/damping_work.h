@@ -12,13 +12,15 @@ namespace pliant {
 class DampingWork {
  public:
   /// before, free: the states at the start and at the end, at time t (s), of a motion of h seconds without
-  /// impulses. parts: those that the impulses move. Parts that deform locally are left out.
+  /// impulses. `before` must outlive the object. parts: those that the impulses move, sorted. Drag and
+  /// damping of parts that deform locally are left out.
   DampingWork(const Dynamics& dynamics, const State& before, const State& free, const std::vector<int>& parts,
               double t, double h);
   /// Whether a moved part has drag, damping or a damper.
-  bool acts() const { return !damped_.empty() || !at_dampers_.empty(); }
+  bool acts() const { return !damped_.empty() || !springs_.empty() || !drives_.empty(); }
   /// Corrects the works of damping, drag and dampers of springs and drives in the state after the impulses.
-  /// All other forces count as constant in time, and the impulses too.
+  /// All other forces, and the forces of the impulses, are assumed constant in time. The work of moving
+  /// anchors at dampers is not corrected.
   void correct(State& after);
 
  private:
@@ -29,10 +31,12 @@ class DampingWork {
 
   const Dynamics& dynamics_;
   const VecX<double>& v_before_;
-  const VecX<double> q_;  // at the end of the motion without impulses
+  VecX<double> q_;  // at the end of the motion without impulses
   double t_, h_;
-  std::vector<int> damped_;      // the parts with drag or damping
-  std::vector<int> at_dampers_;  // the parts at springs and drives; empty if no damper is at a moved part
+  std::vector<int> damped_;                  // the moved parts with drag or damping
+  std::vector<const SpringModel*> springs_;  // with dampers, at moved parts
+  std::vector<const DriveModel*> drives_;    // with dampers, at moved parts
+  std::vector<int> at_dampers_;  // the parts at these springs and drives, and those that they read
   Workspace<double> work_;
   Works without_impulses_ = Works::Zero();
 };

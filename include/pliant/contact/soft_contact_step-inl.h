@@ -95,9 +95,9 @@ PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, St
   recorded_ = before.recorded;
   step.counters.impacts = before.counters.impacts;
   step.counters.sequential_impacts = before.counters.sequential_impacts;
-  Halves halves;
+  Fractions halves;
   try {
-    halves = step_halves(method, step, whole, before.state, tolerance);
+    halves = step_fractions(2, method, step, whole, before.state, tolerance);
   } catch (const StepFailure&) {
     halves.finite = false;
   }
@@ -109,15 +109,15 @@ PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, St
   }
   if (state.at_limit != whole.state.at_limit || state.joints != whole.state.joints ||
       !same_sleepers(state.at_rest, whole.state.at_rest) ||
-      rigid_contacts(halves.first_contacts, record_.contacts.size()) != rigid)
+      rigid_contacts(halves.last_contacts, record_.contacts.size()) != rigid)
     return;
   std::vector<int> parts;
   for (std::size_t i = 0; i < model.parts().size(); ++i)
     if (model.parts()[i].q0 >= 0 && !(state.at_rest.size() > i && state.at_rest[i] < 0))
       parts.push_back(static_cast<int>(i));
   StepContext at_end(dynamics_, state, step.work, step.counters, before.state.time() + length, length);
-  extrapolate(at_end, whole.state, soft_extrapolation(at_end.t, before.state, state, whole.state, parts),
-              halves.first_contacts, parts);
+  extrapolate(at_end, {soft_extrapolation(at_end.t, before.state, state, whole.state, parts)},
+              halves.last_contacts, parts);
 }
 
 /// Returns whether a state has a contact at nodes that is deeper than soft_contact::kMaxOverlapAtStart.
@@ -149,20 +149,22 @@ PLIANT_INLINE bool ContactStepping::copy_deep_nodes(double t, const State& full,
 /// keeps the position of the halves: it met the body in one of both results only. The share is below 1 where
 /// extrapolation would add energy. start, halves, whole: states at the start of the step, and at its end
 /// after the two halves and after the whole step.
-PLIANT_INLINE ContactStepping::Extrapolation ContactStepping::soft_extrapolation(
-    double t, const State& start, const State& halves, const State& whole, const std::vector<int>& parts) {
+PLIANT_INLINE ContactStepping::Coarse ContactStepping::soft_extrapolation(double t, const State& start,
+                                                                          const State& halves,
+                                                                          const State& whole,
+                                                                          const std::vector<int>& parts) {
   const Model& model = dynamics_.model();
-  if (soft_contact::differ(model, halves, whole, parts)) return {whole, 0};
-  Extrapolation result{whole, 1};
-  State full = extrapolated(halves, result, parts);
-  for (int round = 0; copy_deep_nodes(t, full, halves, result.coarse); ++round) {
-    if (round == soft_contact::kMaxRounds) return {whole, 0};
-    full = extrapolated(halves, result, parts);
+  if (soft_contact::differ(model, halves, whole, parts)) return {whole, 0, whole};
+  Coarse result{whole, 1, whole};
+  State full = extrapolated(halves, {result}, parts);
+  for (int round = 0; copy_deep_nodes(t, full, halves, result.state); ++round) {
+    if (round == soft_contact::kMaxRounds) return {whole, 0, whole};
+    full = extrapolated(halves, {result}, parts);
   }
   auto energy_of = [&](const State& state) { return dynamics_.energy(t, state.q, state.v, parts, scratch_); };
   const double before = energy_of(start) - start.work.sum(),
                of_halves = energy_of(halves) - halves.work.sum() - before,
-               of_coarse = energy_of(result.coarse) - whole.work.sum() - before,
+               of_coarse = energy_of(result.state) - whole.work.sum() - before,
                balance = energy_of(full) - (2 * halves.work.sum() - whole.work.sum()) - before;
   result.share = soft_contact::share_without_gain(of_halves, of_coarse, balance);
   return result;

@@ -1,6 +1,6 @@
-// Step doubling: a step with resting or unlocated contacts is repeated as two half steps. The difference of
-// both results gives the error. If both agree, Richardson extrapolation combines them. Function bodies of
-// contact_stepping.h.
+// Step doubling: a step with resting or unlocated contacts is repeated as two half steps, and with a small
+// tolerance as three thirds, too. The difference of the results gives the error. If they agree, Richardson
+// extrapolation combines them. Function bodies of contact_stepping.h.
 #pragma once
 
 #include <pliant/body/speed_scale.h>
@@ -38,6 +38,8 @@ inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
+/// Steps to a tolerance below this are repeated in thirds, too.
+inline constexpr double kThirdsTolerance = 1e-4;
 /// In steps up to this length, times slow_rate(), the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
@@ -102,6 +104,66 @@ PLIANT_INLINE bool ContactStepping::may_double() const {
                                    [&](const Contact& c) { return finder_.finds(c); });
 }
 
+/// Repeats a step in thirds. Returns the error of the extrapolation, O(h^3), in tolerances. If it is at most
+/// 1, extrapolates from the results T_1, T_2, T_3 of the whole step, of its halves and of its thirds to
+///   T = T_3 + 4 (T_3 - T_2) - (T_3 - T_1) / 2
+/// (Hairer, Norsett and Wanner 1993, section II.9). The error is T - (2 T_2 - T_1). If the thirds differ from
+/// the whole step in their events or contacts, nothing is extrapolated, and the error is at least that of the
+/// halves, error_of_halves. before: the counters before the step.
+PLIANT_INLINE StepError ContactStepping::step_by_thirds(Integrator& method, StepContext& step,
+                                                        const ErrorScale& scale, const Whole& whole,
+                                                        const State& initial, const StepCounters& before,
+                                                        double error_of_halves) {
+  State& state = step.state;
+  const State halves = state;
+  restart_step(step, initial, before);
+  const Fractions thirds = step_fractions(3, method, step, whole, initial, scale.tolerance());
+  const double method_error = method.pop_error();
+  if (!thirds.finite || !(method_error <= 1))
+    return {std::numeric_limits<double>::infinity(), 1, thirds.length};
+  if (!agree(whole, thirds, has_event(step, before), state)) {
+    const double difference_of_thirds = difference(whole, thirds, false, scale, initial.time(), state);
+    return {std::max({error_of_halves, method_error, difference_of_thirds}), 1, thirds.length};
+  }
+  const auto change = [&](const auto& t_1, const auto& t_2, const auto& t_3) {
+    return VecX<double>(4.5 * t_3 - 6 * t_2 + 1.5 * t_1);
+  };
+  const Difference from_halves{change(whole.state.q, halves.q, state.q),
+                               change(whole.state.v, halves.v, state.v)};
+  const double error =
+      std::max(method_error, measure(from_halves, whole.length, thirds, false, scale, state));
+  if (error <= 1)
+    extrapolate_rigid(step, {{halves, 4, halves}, {whole.state, -0.5, whole.state}}, thirds, initial);
+  return {error, 2, whole.length};
+}
+
+/// Returns to the start of a step that is repeated.
+PLIANT_INLINE void ContactStepping::restart_step(StepContext& step, const State& initial,
+                                                 const StepCounters& before) {
+  step.counters.impacts = before.impacts;
+  step.counters.sequential_impacts = before.sequential_impacts;
+  undo_step();
+  begin_step();
+  step.state = initial;
+}
+
+/// Extrapolates a step without contacts at nodes. The energy of the result is not linear in the coordinates
+/// and velocities; Work::contact gets the difference.
+PLIANT_INLINE void ContactStepping::extrapolate_rigid(StepContext& step, const std::vector<Coarse>& from,
+                                                      const Fractions& finest, const State& initial) {
+  StepContext at_end(dynamics_, step.state, step.work, step.counters, initial.time() + finest.length,
+                     finest.length);
+  const std::vector<int> parts = parts_touched(dynamics_.model(), record_.contacts);
+  const auto balance_of = [&](const State& at) {
+    return dynamics_.energy(at_end.t, at.q, at.v, parts, scratch_) - at.work.sum();
+  };
+  const double of_finest = balance_of(step.state);
+  double balance = of_finest;
+  for (const Coarse& coarse : from) balance += coarse.share * (of_finest - balance_of(coarse.computed));
+  extrapolate(at_end, from, finest.last_contacts, parts);
+  step.state.work[static_cast<int>(Work::contact)] += balance_of(step.state) - balance;
+}
+
 PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step,
                                                           const ErrorScale& scale, const State& initial,
                                                           double length, const StepCounters& before) {
@@ -113,108 +175,115 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   if (!has_prescribed_motion(model, touching) &&
       step_doubling::were_at_rest(model, scale, parts_touched(model, touching), initial, state))
     return {0, order, length};
-  const Whole whole{state, length, resting_at_start_, record_.contacts.size(),
-                    step.counters.impacts > before.impacts || at_friction_event_};
-  step.counters.impacts = before.impacts;
-  step.counters.sequential_impacts = before.sequential_impacts;
-  undo_step();
-  begin_step();
-  state = initial;
-  const Halves halves = step_halves(method, step, whole, initial, scale.tolerance());
+  const Whole whole{state, length, resting_at_start_, record_.contacts.size(), has_event(step, before)};
+  restart_step(step, initial, before);
+  const Fractions halves = step_fractions(2, method, step, whole, initial, scale.tolerance());
   const double method_error = method.pop_error();
   if (!halves.finite || !(method_error <= 1))
     return {std::numeric_limits<double>::infinity(), order, halves.length};
-  const bool has_event = step.counters.impacts > before.impacts || at_friction_event_;
-  const bool agreed = agree(whole, halves, has_event, state);
+  const bool agreed = agree(whole, halves, has_event(step, before), state);
   const double contact_error = difference(whole, halves, agreed, scale, initial.time(), state);
   const double error = std::max(contact_error, method_error);
-  if (agreed && !whole.has_event && error <= 1) {
-    StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
-                       halves.length);
-    const std::vector<int> parts = parts_touched(model, record_.contacts);
-    const auto balance_of = [&](const State& at) {
-      return dynamics_.energy(at_end.t, at.q, at.v, parts, scratch_) - at.work.sum();
-    };
-    const double balance = 2 * balance_of(state) - balance_of(whole.state);
-    extrapolate(at_end, whole.state, {whole.state, 1}, halves.first_contacts, parts);
-    // Energies are not linear in the coordinates and velocities. Work::contact gets the difference.
-    state.work[static_cast<int>(Work::contact)] += balance_of(state) - balance;
+  if (agreed && !whole.has_event) {
+    if (scale.tolerance() < step_doubling::kThirdsTolerance)
+      return step_by_thirds(method, step, scale, whole, initial, before, error);
+    if (error <= 1) extrapolate_rigid(step, {{whole.state, 1, whole.state}}, halves, initial);
   }
   return {error, order, halves.length};
 }
 
-/// Repeats the step from `initial` as two halves; step.state is the state at their end.
-PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& method, StepContext& step,
-                                                                   const Whole& whole, const State& initial,
-                                                                   double tolerance) {
+/// Repeats the step from `initial` as n equal parts; step.state is the state at their end.
+PLIANT_INLINE ContactStepping::Fractions ContactStepping::step_fractions(int n, Integrator& method,
+                                                                         StepContext& step,
+                                                                         const Whole& whole,
+                                                                         const State& initial,
+                                                                         double tolerance) {
   State& state = step.state;
-  const double start = initial.time(), half = 0.5 * whole.length;
-  auto advance_by = [&](double into, double h) {
-    set_step(state, start + into, h);
+  const double start = initial.time();
+  Fractions result;
+  for (int i = 0; i < n; ++i) {
+    const bool last = i == n - 1;
+    const double end = !last                            ? whole.length * (i + 1) / n
+                       : whole.has_event && result.even ? initial.h
+                                                        : whole.length,
+                 h = end - result.length;
+    if (i > 0) {
+      resting_at_start_.clear();
+      has_unlocated_ = false;
+      at_friction_event_ = false;
+    }
+    result.last_contacts = record_.contacts.size();
+    set_step(state, start + result.length, h);
     StepContext part(dynamics_, state, step.work, step.counters);
-    return step_once(method, part, tolerance);
-  };
-  Halves halves;
-  halves.first = halves.length = advance_by(0, half);
-  halves.first_contacts = record_.contacts.size();
-  halves.gravity_velocities =
-      whole.length *
-      step_doubling::gravity_after_loss(dynamics_.model(), resting_, whole.resting, record_.contacts, start);
-  resting_at_start_.clear();
-  has_unlocated_ = false;
-  at_friction_event_ = false;
-  auto finite = [&] { return state.q.allFinite() && state.v.allFinite(); };
-  halves.finite = finite();
-  if (halves.finite) {
-    const double end = whole.has_event && halves.first == half ? initial.h : whole.length;
-    halves.length = halves.first + advance_by(halves.first, end - halves.first);
-    halves.finite = finite();
+    const double advanced = step_once(method, part, tolerance);
+    result.length = advanced == h ? end : result.length + advanced;
+    if (!last) {
+      result.even = result.even && advanced == h;
+      result.equal_contacts =
+          result.equal_contacts && record_.contacts.size() - result.last_contacts == whole.contacts;
+    }
+    if (i == 0)
+      result.gravity_velocities =
+          whole.length * step_doubling::gravity_after_loss(dynamics_.model(), resting_, whole.resting,
+                                                           record_.contacts, start);
+    result.finite = state.q.allFinite() && state.v.allFinite();
+    if (!result.finite) break;
   }
   state.start = initial.start;
   state.step = initial.step;
   state.h = initial.h;
-  return halves;
+  return result;
 }
 
-/// Returns whether the whole step and its halves have equal lengths, modes of joints, limits and sleep, and
+/// Returns whether the whole step and its parts have equal lengths, modes of joints, limits and sleep, and
 /// numbers of contacts, and whether both or neither ended at an event. If both ended at an event, total
-/// lengths and the contacts of the first half are not compared; the first half must still have its full
-/// length. has_event: whether the halves ended at an event.
-PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_event,
+/// lengths and the contacts of all parts but the last are not compared; these parts must still have their
+/// full length. has_event: whether the parts ended at an event.
+PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Fractions& fractions, bool has_event,
                                           const State& state) const {
-  return halves.first == 0.5 * whole.length && has_event == whole.has_event &&
-         (whole.has_event || halves.length == whole.length) && state.at_limit == whole.state.at_limit &&
+  return fractions.even && has_event == whole.has_event &&
+         (whole.has_event || fractions.length == whole.length) && state.at_limit == whole.state.at_limit &&
          state.joints == whole.state.joints && same_sleepers(state.at_rest, whole.state.at_rest) &&
-         record_.contacts.size() - halves.first_contacts == whole.contacts &&
-         (whole.has_event || halves.first_contacts == whole.contacts);
+         record_.contacts.size() - fractions.last_contacts == whole.contacts &&
+         (whole.has_event || fractions.equal_contacts);
 }
 
-/// Returns the difference between the whole step and its halves, or the error by contacts that the first half
-/// has lost, whichever is larger, in tolerances.
-PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halves& halves, bool agreed,
+/// Returns the difference between the whole step and its repetition in parts, measured in tolerances.
+PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Fractions& fractions, bool agreed,
                                                  const ErrorScale& scale, double start,
                                                  const State& state) const {
   const Model& model = dynamics_.model();
-  const double length = whole.length;
-  const VecX<double> dv = state.v - whole.state.v, none = VecX<double>::Zero(state.q.size());
   VecX<double> rate;
   dynamics_.coordinate_rates(whole.state.q, whole.state.v, rate);
-  const VecX<double> dq = state.q - whole.state.q - (halves.length - length) * rate;
-  const double max_speed = step_doubling::kJumpInGravity * length * model.body().gravity_at(start).norm();
-  const bool jumped = !agreed && step_doubling::has_jump(model, dv, max_speed);
+  const Difference to_whole{state.q - whole.state.q - (fractions.length - whole.length) * rate,
+                            state.v - whole.state.v};
+  const double max_speed =
+      step_doubling::kJumpInGravity * whole.length * model.body().gravity_at(start).norm();
+  const bool jumped = !agreed && step_doubling::has_jump(model, to_whole.v, max_speed);
+  return measure(to_whole, whole.length, fractions, jumped, scale, state);
+}
+
+/// Returns the size of a difference of two results, in tolerances, or the error by contacts that the first
+/// part of a repetition has lost, whichever is larger. length: of the step, s. jumped: whether the velocities
+/// differ by a jump.
+PLIANT_INLINE double ContactStepping::measure(const Difference& difference, double length,
+                                              const Fractions& fractions, bool jumped,
+                                              const ErrorScale& scale, const State& state) const {
   // Returns the displacement by a difference of velocities in the step.
   auto displacement = [&](const VecX<double>& v) {
+    VecX<double> rate;
     dynamics_.coordinate_rates(state.q, v, rate);
     return scale.norm(length * rate);
   };
-  const double slow = slow_rate(model) * length;  // without unit
+  const double slow = slow_rate(dynamics_.model()) * length;  // without unit
   const bool brief = slow <= step_doubling::kBriefStep,
              by_displacement =
                  brief || (jumped && slow <= longest_contact_step(ContactSettings{}, scale.tolerance()));
-  const double end_error =
-                   by_displacement ? std::max(scale.norm(dq), displacement(dv)) : scale.norm(dq, dv, state.v),
-               loss_error = brief ? displacement(halves.gravity_velocities)
-                                  : scale.norm(none, halves.gravity_velocities, state.v);
+  const VecX<double> none = VecX<double>::Zero(state.q.size());
+  const double end_error = by_displacement ? std::max(scale.norm(difference.q), displacement(difference.v))
+                                           : scale.norm(difference.q, difference.v, state.v),
+               loss_error = brief ? displacement(fractions.gravity_velocities)
+                                  : scale.norm(none, fractions.gravity_velocities, state.v);
   return std::max(end_error, loss_error);
 }
 
@@ -239,18 +308,20 @@ PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t
   }
 }
 
-/// Returns a copy of `halves`, the state at the end of the two halves. In it the coordinates and velocities
-/// of some parts are halves + share (halves - coarse).
-PLIANT_INLINE State ContactStepping::extrapolated(const State& halves, const Extrapolation& from,
+/// Returns a copy of a state at the end of the finest steps, in which the coordinates and velocities of some
+/// parts are finest + sum of share (finest - coarse).
+PLIANT_INLINE State ContactStepping::extrapolated(const State& finest, const std::vector<Coarse>& from,
                                                   const std::vector<int>& parts) const {
-  State state = halves;
+  State state = finest;
   for (const int i : parts) {
     const PartModel& m = dynamics_.model().parts()[at(i)];
-    const auto move_on = [&](auto& x, const auto& coarse, int first, int n) {
-      x.segment(first, n) += from.share * (x.segment(first, n) - coarse.segment(first, n));
-    };
-    move_on(state.q, from.coarse.q, m.q0, m.n_q());
-    move_on(state.v, from.coarse.v, m.v0, m.n_v());
+    for (const Coarse& coarse : from) {
+      const auto move_on = [&](auto& x, const auto& fine, const auto& other, int first, int n) {
+        x.segment(first, n) += coarse.share * (fine.segment(first, n) - other.segment(first, n));
+      };
+      move_on(state.q, finest.q, coarse.state.q, m.q0, m.n_q());
+      move_on(state.v, finest.v, coarse.state.v, m.v0, m.n_v());
+    }
   }
   normalise_rotations(dynamics_.model(), state.q);
   return state;
@@ -274,29 +345,33 @@ PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec
   }
 }
 
-/// Extrapolates the state of some parts, at the end of the two halves, by Richardson. whole: the state at the
-/// end of the whole step. from: what extrapolated() gets. second: number of the first contact of the second
-/// half in the record. Works are extrapolated, too. Energies are not linear in the coordinates and
-/// velocities, so that the energy changes by more than the works.
-PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole,
-                                                const Extrapolation& from, std::size_t second,
-                                                const std::vector<int>& parts) {
+/// Extrapolates the state of some parts, at the end of the finest steps, by Richardson. last: number of the
+/// first contact of the last of these steps in the record. Works are extrapolated, too. Energies are not
+/// linear in the coordinates and velocities, so that the energy changes by more than the works.
+PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const std::vector<Coarse>& from,
+                                                std::size_t last, const std::vector<int>& parts) {
   const Model& model = dynamics_.model();
   State& state = step.state;
   auto momenta_of = [&](const State& at_end) {
     dynamics_.evaluate_masses(step.t, at_end.q, at_end.v, parts, scratch_);
     return step_doubling::local_momenta(model, parts, scratch_);
   };
-  const std::vector<Vec3<double>> of_whole = momenta_of(whole);
-  std::vector<Vec3<double>> momenta = momenta_of(state);
-  for (std::size_t i = 0; i < momenta.size(); ++i) momenta[i] += from.share * (momenta[i] - of_whole[i]);
+  const std::vector<Vec3<double>> of_finest = momenta_of(state);
+  std::vector<Vec3<double>> momenta = of_finest;
+  Vec<double, kWorks> work = state.work;
+  for (const Coarse& coarse : from) {
+    const std::vector<Vec3<double>> of_coarse = momenta_of(coarse.computed);
+    for (std::size_t i = 0; i < momenta.size(); ++i)
+      momenta[i] += coarse.share * (of_finest[i] - of_coarse[i]);
+    work += coarse.share * (state.work - coarse.computed.work);
+  }
   state = extrapolated(state, from, parts);
-  state.work += from.share * (state.work - whole.work);
+  state.work = work;
   project_frames(step, parts);
   keep_momenta(step.t, momenta, parts, state);
   project_joints(step);
   project_limits(step);
-  include_openings(second, step.t, step.h, state);
+  include_openings(last, step.t, step.h, state);
 }
 
 }  // namespace pliant

@@ -35,7 +35,7 @@ inline constexpr double kSparseFactorisation = 13;
 /// Cost of the solves of a step, in factorisations. Measured: 0.13 for the shell above, 0.1 for the solid.
 inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
-/// These steps are at most of second order for every method.
+/// These steps are at most of third order for every method.
 inline constexpr double kCoarse = 1e-6;
 /// Estimated time of a trial, microseconds, after which it ends, and the least cost of a trial, evaluations.
 /// Small models do not reach this time.

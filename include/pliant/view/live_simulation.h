@@ -160,8 +160,8 @@ class LiveSimulation {
   /// std::invalid_argument for a value below ParameterStiffness::least, or not finite.
   void set_parameter_stiffness(std::size_t i, double value);
 
-  /// The stiffnesses of the drives of parameters that are constant and positive in the scene. Left out are
-  /// the same parts as above. The order does not change.
+  /// The stiffnesses of the drives of parameters that are constant and positive in the scene. Drives of
+  /// parts whose local elasticity is integrated implicitly are left out. The order does not change.
   const std::vector<DriveStiffness>& drive_stiffnesses() const { return drive_stiffnesses_; }
   /// Changes the stiffness of a drive linearly within the next interval. i: its number in
   /// drive_stiffnesses(); value: N/m or N m. From then on the energy of the drive is work of actuation.

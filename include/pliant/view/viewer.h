@@ -18,8 +18,8 @@ class NoWindow : public std::runtime_error {
 
 struct ViewOptions {
   int width = 960, height = 540;  ///< of the window, pixels
-  int threads = 0;                ///< of the simulation; 0: one for each processor but one, at least one
-  bool plays = false;             ///< whether the motion starts at once
+  int threads = 0;     ///< of the simulation; 0: by the cost of the scene, at most all processors but one
+  bool plays = false;  ///< whether the motion starts at once
   std::filesystem::path scene_folder = ".";  ///< folder of the scene, to which its mesh files are relative
   std::filesystem::path saved;               ///< the file that the button "save" writes
   /// File of synthetic input (README.md of this room): it drives the window in place of a user. Empty: none.

@@ -251,8 +251,9 @@ void LiveMotion::add_drive_stiffnesses(const std::string& part) {
     DriveStiffness& stiffness = drive_stiffnesses_[i];
     if (stiffness.part->name() != part) continue;
     auto value = static_cast<float>(stiffness.next);
-    if (!add_slider("drive of " + stiffness.parameter, value, 0.1f * static_cast<float>(stiffness.first),
-                    static_cast<float>(stiffness.most), "%.4g", ImGuiSliderFlags_Logarithmic))
+    if (!add_slider("drive stiffness of " + stiffness.parameter, value,
+                    0.1f * static_cast<float>(stiffness.first), static_cast<float>(stiffness.most), "%.4g",
+                    ImGuiSliderFlags_Logarithmic))
       continue;
     stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {

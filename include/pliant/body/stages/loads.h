@@ -185,22 +185,18 @@ class LoadStage {
   Vec<S, kWorks>& power_;
 };
 
-/// Returns the power of the dampers of springs, and of drives whose energy is in the ledger, W: the power of
-/// Work::spring_damping. The positions of the parts at them must be in the workspace.
+/// Return the power of the damper of a spring, and of a drive whose energy is in the ledger, W: their share
+/// in Work::spring_damping. The positions of the parts at it must be in the workspace.
 template <class S>
-S damper_power(const Evaluation<S>& e) {
-  S power(0.0);
-  for (const SpringModel& s : e.model().springs()) {
-    if (!s.spring->acts_at(e.t)) continue;
-    const PortMotion<S> a = motion_of(e, s.a, s.spring->a), b = motion_of(e, s.b, s.spring->b);
-    power -= force_of(e, s, a, b).damping.dot(b.x_dot - a.x_dot);
-  }
-  for (const DriveModel& m : e.model().drives()) {
-    if (!stores_energy(e.model(), m)) continue;
-    const S x = signal_value(e, m.on), x_dot = signal_rate(e, m.on);
-    power += force_of(e, m, x, x_dot).damping * x_dot;
-  }
-  return power;
+S damper_power(const Evaluation<S>& e, const SpringModel& s) {
+  if (!s.spring->acts_at(e.t)) return S(0.0);
+  const PortMotion<S> a = motion_of(e, s.a, s.spring->a), b = motion_of(e, s.b, s.spring->b);
+  return -force_of(e, s, a, b).damping.dot(b.x_dot - a.x_dot);
+}
+template <class S>
+S damper_power(const Evaluation<S>& e, const DriveModel& m) {
+  const S x = signal_value(e, m.on), x_dot = signal_rate(e, m.on);
+  return force_of(e, m, x, x_dot).damping * x_dot;
 }
 
 /// Stage 3, loads: adds the forces of springs, points and torques to the parts they act on.
