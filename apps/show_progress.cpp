@@ -64,7 +64,7 @@ class StageProgress : public pliant::Progress {
 
   double elapsed() const { return pliant::seconds_since(start_); }
   double fraction() const { return total_ > 0 ? std::min(1.0, done_ / total_) : 1; }
-  // Returns the progress as text, for example "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left".
+  // Returns the progress as text, for example "45 %, 1.8 of 4 s, 0.18 times real time, 12 s left".
   std::string numbers() const {
     const double wall = elapsed();
     std::string text =

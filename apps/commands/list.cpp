@@ -84,7 +84,7 @@ void list_integrators() {
 }
 
 void list_functions() {
-  std::cout << "Formulas of time, for example \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
+  std::cout << "Formulas, for example \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
   for (const pliant::Formula::Function& function : pliant::Formula::functions())
     std::cout << "  " << std::left << std::setw(8) << function.name << " " << function.meaning << "\n";
 }
@@ -100,7 +100,7 @@ constexpr Kind kKinds[] = {
     {"laws", "energies of local deformation, with their parameters", list_laws},
     {"joints", "constraints between points of parts and of the world", list_joints},
     {"integrators", "methods of time integration", list_integrators},
-    {"functions", "functions for formulas of time", list_functions},
+    {"functions", "functions for formulas", list_functions},
 };
 
 }  // namespace

@@ -72,7 +72,8 @@ void add_view(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--threads", options->view.threads,
-          "Number of threads of the simulation [all processors but one]; results do not depend on it")
+          "Number of threads of the simulation [by the cost of the scene, at most all processors but one]; "
+          "results do not depend on it")
       ->check(count_up_to(4096))
       ->type_name("N");
   command->add_option("--script", options->view.script, "File of synthetic input, for tests")
@@ -83,9 +84,10 @@ void add_view(CLI::App& app, Action& action) {
       ->check(positive_number())
       ->type_name("S");
   command->footer(
-      "Mouse: the left button drags a part by a spring, or turns the view beside the parts; the right "
-      "button\n"
-      "turns the view; the middle button, or Shift and the left one, moves it; the wheel zooms.\n"
+      "Mouse: the left button drags the part under it by a spring; where there is no part, it turns the "
+      "view, "
+      "as\n"
+      "the right button does; the middle button, or Shift and the left one, moves it; the wheel zooms.\n"
       "Keys: space plays and pauses, s makes one step, r resets, w saves, Escape closes; c, f, j and m "
       "switch\n"
       "strain colours, forces, joints and springs, and meshes on and off.\n"

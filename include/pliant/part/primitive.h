@@ -49,8 +49,8 @@ class Primitive final : public Part {
   void evaluate(const ParameterValues<P>& values, const Material<S>* at, JetBatch<S>& batch) const {
     const LinkParameters<P> all{values.b.data(), values.b_dot.data(), parameters().dynamic_flags()};
     shape_jets<Shape>(all, at, batch);  // e(u; a) and de/da
-    if (chain_.acts(chain_part(all)))   // T(e; b): J <- [F J, G_T], link by link
-      chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
+    // x = T(e; b), link by link: J <- [F J + T_h dh/da, G_T] (deform/link.h).
+    if (chain_.acts(chain_part(all))) chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
 
   /// Applies T to jets that contain undeformed positions s and columns J. All parameters are constants here.

@@ -34,9 +34,10 @@ class JointSwitching {
   /// switching time at most the tolerance (s) after step.t counts as reached. Does nothing if the state is
   /// not finite.
   void switch_at(StepContext& step, double tolerance);
-  /// Engages the joints of the marked islands by engage_joints() (project/project.h): closing joints with a
-  /// small gap become closed if closed joints are projected, and impulses project the velocities onto the
-  /// closed joints. Records the impulses. islands: one mark for each island of the model.
+  /// Engages the joints of the marked islands by engage_joints() (project/project.h). If the settings project
+  /// closed joints, joints of JointMode::closing with a small gap become closed. Impulses then change the
+  /// velocities so that closed joints stay closed. Records the impulses. islands: one mark for each island of
+  /// the model.
   void engage(StepContext& step, const std::vector<bool>& islands);
   /// Applies the impulses at a kink (s) of prescribed paths and at kinks within the tolerance (s) of it.
   /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed

@@ -24,14 +24,15 @@ using NamedPoints = std::map<std::string, Point>;
 
 /// Returns the signal of a quantity of an owner, or nothing if nothing has the name of the owner. Adds the
 /// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner has no
-/// such quantity, or if two owners have it.
+/// such quantity, or if two objects of this name, for example a part and a spring, both have the quantity.
 std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, const std::string& quantity,
                                    const NamedPoints& points = {});
 
 /// Returns the function of a formula of t and of named quantities, for example "-20 * ball.z". Throws
 /// FormulaError (math/formula.h) for an error in the text or an unknown name, and std::invalid_argument for
-/// more than kMaxSignals quantities. at_points: the quantities_at_points() of a distributed force; a sensor
-/// or input with the name of one that the formula reads is an error.
+/// more than kMaxSignals quantities. at_points: the names of quantities_at_points(), for formulas of
+/// distributed forces. Throws FormulaError if the formula reads one of these quantities, and a sensor or
+/// input has the same name.
 StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {},
                             const std::vector<std::string>& at_points = {});
 
