@@ -95,13 +95,13 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
 
 constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution or the number of parts";
 
-/// Ends the program at once. A run is resumed as after a kill. Nothing here allocates memory.
+/// Ends the program at once. The user can then continue a run with --resume. Nothing here allocates memory.
 [[noreturn]] void end_without_memory() {
   std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
   std::_Exit(kResources);
 }
 
-/// Called instead of std::abort.
+/// The handler of std::terminate. Ends the program with a message if memory is exhausted; otherwise aborts.
 [[noreturn]] void on_terminate() {
   bool out_of_memory = false;
   try {
@@ -121,7 +121,7 @@ constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution o
 
 // The linker option --wrap calls this function in place of __cxa_throw, which throws every exception. An
 // exception std::bad_alloc must not unwind the stack: Eigen 3.4 frees the memory of a matrix before it
-// allocates the new one, so that the destructor of the matrix would free the memory again.
+// allocates new memory, so that the destructor of the matrix would free the memory again.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier)
 [[noreturn]] void __real___cxa_throw(void* exception, std::type_info* type, void (*destroy)(void*));

@@ -8,8 +8,8 @@
 //
 // Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
 // largest number of bodies (10000). NAME: measures only the systems whose name contains this text. SECONDS: a
-// system is not measured with more bodies if that run would take longer than this (60). TOLERANCE: that of
-// contact (ContactSettings::tolerance); 0: none (0).
+// system is not measured with more bodies if their run would probably take longer than this time (60).
+// TOLERANCE: ContactSettings::tolerance; with 0, contact has no tolerance (0).
 //
 // Columns of the table, with the names of the columns of the files if they differ:
 //   step               mean time of a step in the whole run (step_us_per_body)
@@ -116,7 +116,8 @@ void measure_stages(Simulation& simulation, const State& state, Cost& cost) {
   });
 }
 
-/// Measures a system of n bodies. tolerance: that of contact; 0: none. seconds: receives the time of its run.
+/// Measures a system of n bodies. tolerance: ContactSettings::tolerance, or 0 for none. seconds: receives the
+/// time of the run.
 Cost measure(const System& system, int n, double tolerance, double& seconds) {
   MultiBody body, without_contact, sleepy;
   for (MultiBody* each : {&body, &without_contact, &sleepy}) {

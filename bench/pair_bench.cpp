@@ -114,7 +114,8 @@ Pose pose_of(const Eigen::Quaterniond& a, const Vec3<double>& c, const Eigen::Qu
   return pose;
 }
 
-/// Returns poses, sequence by sequence, that start with gaps in a band.
+/// Returns the poses of all sequences, one sequence after the other. The first pose of each sequence has a
+/// gap in the band.
 std::vector<Pose> random_poses(Pair& pair, const Band& band, Random& random) {
   std::vector<Pose> poses;
   for (int sequence = 0; sequence < kSequences; ++sequence) {

@@ -4,12 +4,13 @@
 // 11.695 Hz (Lamb 1882). Higher modes of the membrane are not measured, because on a mesh they are mixed with
 // modes of short waves. For each basis, the table has the processor time for a simulated period of the lowest
 // mode and the relative errors of the frequencies. With the basis "nodes", the step is 0.9 times the largest
-// stable step. With modes and polynomials there are three steps per period, and these are exact. The error of
-// the basis "nodes" is the error of the frequency of the mesh plus that of the method of integration. The
-// frequency of the mesh is that of the basis "modes". For order 2 this overestimates the error: the basis
-// "modes" uses elements of 10 nodes, and the basis "nodes" uses elements of 15 nodes, which are more
-// accurate. Writes CSV to standard output, and then the time of each basis at given errors of the lower mode
-// and of both modes. An entry is "not reached" if no row has at most the given error.
+// stable step. With modes and polynomials there are three steps per period, and free oscillators are
+// integrated exactly. The error of the basis "nodes" is the error of the frequency of the mesh plus that of
+// the method of integration. The frequency of the mesh is that of the basis "modes". For order 2 this
+// overestimates the error: the basis "modes" uses elements of 10 nodes, and the basis "nodes" uses elements
+// of 15 nodes, which are more accurate. Writes CSV to standard output, and then the time of each basis at
+// given errors of the lower mode and of both modes. An entry is "not reached" if no row has at most the given
+// error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>

@@ -1,7 +1,7 @@
-// Run time against energy error of scenes, with every method. The first step is 0.02 s. It is halved up to
-// six times, until the energy error is below 1e-10 of the largest kinetic energy. If the argument is a folder
-// of scenes, these are the mechanisms A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et al.
-// 2006).
+// Run time against energy error of scenes, with every method. The step is 0.02 s at first, and is halved up
+// to six times, until the energy error is below 1e-10 of the largest kinetic energy. If the argument is a
+// folder of scenes, the program measures the mechanisms A01, A02 and A04 of the IFToMM benchmark library
+// (Gonzalez et al. 2006).
 //
 //   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
 //

@@ -4,9 +4,9 @@
 //   scene_states SCENE.json METHOD step|tolerance VALUE INTERVAL FILE
 //
 // VALUE: length of the steps in s, or the tolerance. INTERVAL: time between two states in s; a step ends at
-// each of these times. The end is that of the scene. Writes 13 numbers for each part and time to FILE
-// (doubles, without a header): centre, quaternion w x y z, velocity (world), angular velocity (body frame).
-// Prints the CPU time of the steps in seconds, without the time of loading and recording.
+// each of these times. The run ends at the end time of the scene. Writes 13 numbers for each part and time to
+// FILE (doubles, without a header): centre, quaternion w x y z, velocity (world), angular velocity (body
+// frame). Prints the CPU time of the steps in seconds, without the time of loading and recording.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -2,8 +2,8 @@
 // Further columns are the multiply-adds (the larger of the numbers of products and sums) and the bytes per
 // triangle, counted from the formulas. The columns part_of_peak and part_of_bandwidth compare the evaluation
 // with two speeds, which this run measures with one thread: the peak of multiply-adds, and the bandwidth of a
-// triad (a = b + s c) over arrays with as many bytes in total as the evaluation uses. Each column is the time
-// that the counted work needs at this speed times the number of threads / the measured time.
+// triad (a = b + s c) over arrays with as many bytes in total as the evaluation uses. The speed is multiplied
+// by the number of threads. Each column is the time of the counted work at this product / the measured time.
 //
 //   shell_bench [FOLDER]     also writes shell_bench.csv to FOLDER
 #include <cmath>
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     // Data of a hinge: its gradient, read twice (linear), or its coordinates, read again, and the sine and
     // cosine of its rest angle (folding); its angle; two moments and their indices. Data of a triangle: the
     // matrices Q and C of bending.h, the sides of its edges, indices of edges and angles, and moments,
-    // written and read. It also has edges, read twice (linear), or its strain at rest (folding).
+    // written and read. A triangle also has edges, read twice (linear), or its strain at rest (folding).
     const double triangles = gather_bytes(3, 2) + (6 + 9 + 3 + 3 + 2 * 3) * 8;
     bench.measure("linear bending", mesh, LinearBending(mesh, sheet, 1),
                   {120, hinges + 1.5 * (2 * 12 + 4) * 8 + triangles + 2 * 9 * 8});

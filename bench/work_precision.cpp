@@ -16,10 +16,11 @@
 // Tables go to standard output.
 //
 // Methods without error control start with steps of 0.05 s, or with eight steps per run; each further setting
-// halves the step. The others start with the tolerance 0.1; each further setting divides it by ten.
-// linearly_implicit is measured with fixed steps, and with tolerances as linearly_implicit_controlled. A
-// method is measured with at least six settings that succeed. After them, the measurement stops if a run
-// exceeds the time limit, or if the error is below 1e-11 or below the resolution of the reference.
+// halves the step. Methods with error control start with the tolerance 0.1; each further setting divides it
+// by ten. linearly_implicit is measured with fixed steps, and with tolerances as
+// linearly_implicit_controlled. A method is measured with at least six settings that succeed. After them, the
+// measurement stops if a run exceeds the time limit, or if the error is below 1e-11 or below the resolution
+// of the reference.
 //
 // error: error at the end, of the positions of the bodies divided by their length, or of all coordinates
 // (error_scale.h). error_along: the maximum of this error at eight times, in a run that stops at each of
@@ -164,8 +165,9 @@ class ErrorMeter {
   }
   const Model& model() const { return simulation_->model(); }
 
-  /// Returns the largest distance of a part of a from that of b / length of a body, or the difference of all
-  /// coordinates in the norm of ErrorScale (error_scale.h) if the problem has no such length.
+  /// Returns the largest distance between a part in state a and the part in state b, divided by the length of
+  /// a body. If the problem has no such length, returns the difference of all coordinates in the norm of
+  /// ErrorScale (error_scale.h).
   double position_error(const State& a, const State& b) const {
     if (!a.q.allFinite() || !b.q.allFinite()) return std::numeric_limits<double>::infinity();
     if (length_ == 0) return scale_->norm(a.q - b.q);
@@ -214,8 +216,8 @@ bool is_smooth(const Problem& problem) {
 }
 
 /// Runs with the first of the tolerances finest, 10 finest, 100 finest, ... at which the method succeeds.
-/// Rounding errors make it fail at finer ones. Throws StepFailure if it also fails at the first tolerance
-/// above 1e-9.
+/// At finer tolerances, rounding errors make the method fail. Throws StepFailure if the method also fails at
+/// the first tolerance above 1e-9.
 Outcome run_at_finest_tolerance(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {
@@ -225,8 +227,8 @@ Outcome run_at_finest_tolerance(const Problem& problem, const std::string& metho
     }
 }
 
-/// Computes a reference by a method of reference_methods.h. The step is the one whose result agrees best with
-/// that of the double step; shorter steps only add rounding errors.
+/// Computes a reference by a method of reference_methods.h. The selected step is the one whose result agrees
+/// best with that of a step of twice its length; shorter steps only add rounding errors.
 template <class Method>
 Outcome smooth(const Problem& problem, const ErrorMeter& meter) {
   constexpr double kAgree = 1e-14, kFirstStep = 0.0125;

@@ -39,7 +39,7 @@ class TermCheck {
     }
     return {};
   }
-  /// Stage 3: rest values, springs, forces and torques.
+  /// Stage 3: rest values and loads.
   std::string loads() const {
     for (const PartModel& m : model_.parts())
       for (const int k : m.part->parameters().dynamic()) {

@@ -7,8 +7,8 @@
 namespace pliant {
 
 namespace {
-/// Adds to the state the change of the frame and of the parameters, and their rates, that the given local
-/// displacements and their rates at time 0 contain.
+/// Adds LocalDeformation::initial_frame() and initial_frame_rate() to the state: the share of the given local
+/// displacements and velocities that changes the frame and the parameters.
 void displace_frame(const PartModel& m, State& state) {
   const Mat3<double> R = m.part->R0().toRotationMatrix();
   if (const VecX<double>& rate = m.local->initial_frame_rate(); rate.size() > 0) {
@@ -143,8 +143,8 @@ double Model::gap(const State& state, int joint) const {
 
 namespace {
 
-/// Returns the part whose first number, m.q0 or m.v0, is the largest one up to i. The parts that have such
-/// numbers are in their order; fixed parts, with -1, may be between them.
+/// Returns the part that has entry i of q or v: the part with the largest m.q0 or m.v0 that is at most i.
+/// These numbers increase from part to part; fixed parts, with -1, may be between them.
 const PartModel& part_with(const std::vector<PartModel>& parts, int i, int PartModel::*first) {
   std::size_t low = 0, high = parts.size();
   while (high - low > 1) {

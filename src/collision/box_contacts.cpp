@@ -24,8 +24,8 @@ constexpr double kSameCorner = 1e-6;
 struct Axis {
   Vec3<double> n = Vec3<double>::Zero();  ///< unit vector from a to b, world
   double gap = -std::numeric_limits<double>::infinity();
-  /// of_a: number of the axis of box a along which n is; -1 if n is a face normal of box b. of_b: as of_a,
-  /// with the boxes exchanged. If neither is -1, n is along the cross product of both axes.
+  /// Numbers of an axis of box a and of box b. If of_b is -1, n is along the axis of a, and vice versa. If
+  /// neither is -1, n is along the cross product of both axes.
   int of_a = -1, of_b = -1;
 };
 
@@ -67,7 +67,7 @@ Vec3<double> nearest_in_box(const PlacedBox& box, const Vec3<double>& x) {
 }
 
 /// Returns the point of an edge of a that is nearest to an edge of b. The cross product of the two edges is
-/// along the axis. Of all such edges they are those that face each other.
+/// along `axis`. Of the edges with these directions, the two that face each other are used.
 Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
   const Vec3<double> p = farthest_corner(a, axis.n, axis.of_a), q = farthest_corner(b, -axis.n, axis.of_b);
   const Vec3<double> e = a.R.col(axis.of_a), f = b.R.col(axis.of_b), d = q - p;

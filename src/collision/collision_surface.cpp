@@ -25,8 +25,8 @@ constexpr double kCoarseMargin = 1.1;
 /// Largest distance of the surface from the chords between its sample points, in sizes of the part
 /// (Part::size(), its largest half extent).
 constexpr double kSurfaceSag = 0.02;
-/// Largest height of the lowest sample point over the lowest surface point, in sizes. Two thin parts that
-/// cross have the largest one.
+/// Largest height of the lowest sample point over the lowest surface point, in sizes. The largest value
+/// occurs where two thin parts cross.
 constexpr double kThinSag = 0.1;
 /// Sample points whose heights differ by at most this, in sizes of the part, are equally low.
 constexpr double kSameHeight = 1e-6;

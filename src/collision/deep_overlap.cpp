@@ -1,5 +1,6 @@
 // Deep overlap: each of two parts contains the centre of the other, which can happen at the start of a run.
-// The lowest points of one part over the other are then on the far side of the other. The contact normal is
+// The points of one surface that are deepest inside the other part then lie beyond the centre of that part,
+// where its outward normal points in the wrong direction. The contact normal is
 // the direction n of least depth among a few candidates,
 //   depth(n) = h_a(-n) + h_b(n) - n . (c_a - c_b),
 // where h_a and h_b are the support functions of the surfaces about their centres.
@@ -18,8 +19,8 @@ namespace {
 /// sizes.
 constexpr double kOneCentre = 1e-9;
 /// The centre of part a is treated as inside part b if f = w - 1 of b is less than this at the centre. A
-/// centre slightly outside b (f > 0) is included, because the lowest points of b over a are then close to
-/// this centre.
+/// centre slightly outside b (f > 0) is included, too: the points of b that are deepest inside a are then
+/// close to the centre of a, where the gradient of f of a gives no reliable normal.
 constexpr double kNearCentre = 0.1;
 }  // namespace
 

@@ -26,7 +26,8 @@ constexpr double kPairMargin = 0.05;
 /// The boxes are also enlarged by half the largest gap of the search. They are computed again if this half
 /// gap exceeds kMaxExcess times the half gap of the present search plus the least margin of the boxes.
 constexpr double kMaxExcess = 2;
-/// Candidates of patches (features/) are kept for at most this many times the number of nearby pairs.
+/// Pairs of patches (features/) are kept for at most this many pairs of parts, as a multiple of the number of
+/// nearby pairs.
 constexpr std::size_t kMaxKeptPairs = 2;
 
 }  // namespace
@@ -211,7 +212,7 @@ void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* mar
     }
     s.tree.build(s.wide);
     s.tree.near_pairs(0, s.wide_pairs);
-    // Candidates of pairs that are apart now are dropped from time to time.
+    // All kept pairs of patches are dropped if too many of them belong to pairs of parts that are apart now.
     if (s.patch_pairs.size() > kMaxKeptPairs * s.wide_pairs.size()) s.patch_pairs.clear();
   }
   s.pairs.clear();

@@ -64,8 +64,8 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
     }
     gradient = part_.inside_outside_gradient(in_b, values_);
     const double height = part_.inside_outside(in_b, values_) / gradient.norm();
-    // No point is deeper than half the thickness of a part. Beyond that, f / |grad f| is the distance to a
-    // far part of the surface. The distance along the thin axis is used instead.
+    // No point is deeper than half the thickness of b. If f / |grad f| is below this, it is the distance to a
+    // far part of the surface, and the distance along the thin axis is used instead.
     return height < -0.5 * thickness_ ? across(in_b, gradient) : height;
   }
   double height(const Vec3<double>& p) const override {
@@ -278,9 +278,9 @@ bool ContactFinder::are_apart(int a, int b, double max_gap) const {
   return d.squaredNorm() - extent(one) - extent(other) > max_gap * d.norm();
 }
 
-/// Appends the contacts of a pair of parts. Boxes, balls on boxes and ellipsoids have closed forms, convex
-/// parts use their support functions, and other parts their features. Without these both surfaces are
-/// searched; a point found from both is added once.
+/// Appends the contacts of a pair of parts. Boxes, balls on boxes and ellipsoids have closed forms. Convex
+/// parts use their support functions, and other parts their features. Parts in deep overlap get one contact.
+/// For all other pairs both surfaces are searched; a point that is found on both is added once.
 void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, max_gap)) return;

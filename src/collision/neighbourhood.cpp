@@ -14,7 +14,8 @@ namespace pliant {
 
 namespace {
 
-/// Largest rotation of a part over a plane in a step, rad: its points may move by this times its reach.
+/// Largest rotation of a part over a plane in a step, rad. The points of the part may move by this angle
+/// times the reach of the part.
 constexpr double kMaxTurnOverPlane = 0.5;
 /// A step that is done is kept if no motion is larger than its limit times this factor.
 constexpr double kToleratedTravel = 1.125;

@@ -11,8 +11,8 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxSteps = 1e12;
-/// Largest distance of a frame from the end of a step, relative to the step, at which the frame counts as
-/// being at the end of the step.
+/// Largest distance of a frame from the end of a step, relative to the step, at which the frame shows the
+/// state at the end of the step.
 constexpr double kOnStep = 1e-6;
 
 void require(bool good, const char* name, double value, const char* expected) {

@@ -25,7 +25,7 @@ using Each = ColumnGroup::Each;
 constexpr const char* kParts = "parts";
 constexpr const char* kJoints = "joints";
 
-/// The index of a column name such as "*.d[12].x": its position and the number.
+/// The index in a column name such as "*.d[12].x": the position, length and text of its number.
 struct NameIndex {
   std::size_t begin = std::string::npos, length = 0;
   std::string number;
@@ -87,7 +87,7 @@ Json table_json(std::vector<Column> columns) {
   return json_of(TableColumns{table_group(std::move(columns))});
 }
 
-/// The kinds of parts and joints: those of one kind have the same columns in all tables.
+/// The kinds of parts and joints. Parts or joints of one kind have the same columns in all tables.
 class Kinds {
  public:
   Kinds(const Model& model, std::vector<TableColumns> tables) : model_(&model) {

@@ -81,7 +81,7 @@ ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>()) {
   try {
     for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([pool = impl_.get()] { pool->serve(); });
   } catch (const std::system_error&) {
-    // There are fewer threads.
+    // The pool works with the threads that exist.
   } catch (...) {
     impl_->end();
     throw;

@@ -10,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// Returns the derivatives [e_u e_v e_w] of e at uvw = (u, v, w), and writes e there.
+/// Returns the derivatives [e_u e_v e_w] at uvw = (u, v, w). e: output, the position there.
 Mat3<double> tangents_at(const ShapeInterface& shape, const Vec3<double>& uvw, ShapeParameters a,
                          Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);

@@ -48,8 +48,8 @@ double number_after(const std::string& file, const std::string& word) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Returns the memory that the control group of this process allows, in version 2 of the control groups,
-/// bytes; infinity without a limit.
+/// Returns the memory that the control group (version 2) of this process still allows, bytes; infinity
+/// without a limit.
 double memory_of_group() {
   double available = std::numeric_limits<double>::infinity();
   std::ifstream groups("/proc/self/cgroup");

@@ -202,7 +202,7 @@ void Pipeline::draw_bodies(const Picture& picture) {
 // Draws the edges of all triangles, slightly nearer to the eye than the surfaces.
 void Pipeline::draw_edges() {
   if (meshes_.index_count() == 0) return;
-  constexpr float kNearer = -1;  // in units of the depth of the framebuffer and of the slope
+  constexpr float kNearer = -1;  // both arguments of glPolygonOffset: factor of the slope, units of depth
   body_program_.use();
   gl_.uniform_3f(body_program_.uniform("own_color"), 0.02f, 0.02f, 0.03f);
   meshes_.bind();

@@ -33,7 +33,7 @@ PassSizes pass_sizes(int width, int height);
 class Pipeline {
  public:
   Pipeline(const GlContext& context, const PassSizes& sizes);
-  /// Returns the image of a picture. The sizes must have 2 samples.
+  /// Returns the image of a picture. PassSizes::samples must be 2.
   Image draw(const Picture& picture);
   /// Draws a picture, without its colour bar, into the lower left corner of framebuffer 0, that of the
   /// window.

@@ -35,8 +35,8 @@ std::vector<double> resolutions(const std::vector<TrackLine>& lines, const Recor
 }
 
 /// Returns the number of pieces of the lines between two recorded states for which each piece is bent by at
-/// most the resolution. The bend of a piece is proportional to the square of its length. low, high: positions
-/// at the two states.
+/// most the resolution; at most kMostPieces. The bend of a piece is proportional to the square of its length.
+/// low, high: positions at the two states.
 int count_pieces(const std::vector<TrackLine>& lines, const std::vector<double>& resolution,
                  const RecordedStep& step, const Positions& low, const Positions& high) {
   double bends = 0;  // largest bend / resolution

@@ -39,7 +39,7 @@ class WindowRenderer::Impl {
   GlContext context;
   gl::Functions gl;
   std::array<Sized, kQualities> by_quality;
-  Pipeline* last = nullptr;  // that drew the last picture
+  Pipeline* last = nullptr;  // the pipeline that drew the last picture
 };
 
 WindowRenderer::WindowRenderer(GlContext::Loader loader) : impl_(std::make_unique<Impl>(std::move(loader))) {}

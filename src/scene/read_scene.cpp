@@ -205,7 +205,7 @@ class SceneReader {
       faults_.unknown(name, "material", names);
   }
 
-  /// Returns the objects of a list and reports names that are given twice, also those that a ring makes.
+  /// Returns the objects of a list. Reports names that are given twice, also names of the joints of a ring.
   std::vector<Reader> named(const std::string& list) {
     std::vector<Reader> all = root_.objects(list);
     std::map<std::string, const JsonValue*> names;
@@ -244,7 +244,8 @@ class SceneReader {
     if (r.given("off")) spring.off = r.number("off");
     springs_.emplace_back(r, &spring);
   }
-  /// Reads all values that may read the state: their names must be known before.
+  /// Reads all values that may be functions of the state. The parts, joints, springs and tracks that their
+  /// formulas name must exist before.
   void read_actuation(const PointReader& points) {
     for (const auto& [r, joint] : joints_) read_joint_limits(r, *joint, faults_, scene_->body);
     const StateReader states(*scene_, faults_);

@@ -20,7 +20,7 @@ void check_formula(const JsonValue& value, const ReportAt& report) {
   }
 }
 
-/// As check_formula(), but the formula may contain names. A reader checks the names.
+/// Checks a formula as check_formula() does, but accepts names. StateReader checks the names.
 void check_state_formula(const JsonValue& value, const ReportAt& report) {
   try {
     Formula formula(value.string(), [](const std::string&, const std::string&) { return 0; });
@@ -159,7 +159,8 @@ std::vector<double> numbers(const JsonValue& array) {
   return x;
 }
 
-/// Returns the function through keys without end rates. frames: the value that selects the interpolation.
+/// Returns the function through key frames without end rates. frames: the JSON value, whose key
+/// "interpolation" selects the curve.
 TimeFunction through(const JsonValue& frames, std::vector<double> t, std::vector<double> y) {
   return schema::is_linear(frames) ? linear_key_frames(std::move(t), std::move(y))
                                    : TimeFunction::key_frames(std::move(t), std::move(y));

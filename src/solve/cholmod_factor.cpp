@@ -139,7 +139,7 @@ class CholmodFactor final : public SparseFactor {
 }  // namespace
 
 std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options) {
-  static std::once_flag once;  // islands make factorisations on several threads
+  static std::once_flag once;  // several threads can call this function at the same time
   std::call_once(once, use_one_blas_thread);
   return std::make_unique<CholmodFactor>(options);
 }

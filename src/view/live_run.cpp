@@ -31,7 +31,8 @@ class LiveRun::Clock {
     measured_time_ = time;
     speed_ = delay_ = 0;
   }
-  /// Returns the wall time at which the interval after one of `interval` seconds is due.
+  /// Returns the wall time at which the next interval is due. interval: length of an interval, s. max_speed:
+  /// largest simulated time / wall time.
   WallClock::time_point next_due(double interval, double max_speed) {
     const WallClock::time_point now = WallClock::now();
     if (!std::isfinite(max_speed)) {
@@ -48,7 +49,7 @@ class LiveRun::Clock {
   }
   /// Returns how late the last interval ended, s.
   double delay() const { return delay_; }
-  /// The time that commands took is not caught up. start: when they began.
+  /// Moves the due time by the time that commands took, so that it is not caught up. start: when they began.
   void skip_since(WallClock::time_point start) { due_ += WallClock::now() - start; }
   /// Measures the speed at a simulated time, s. Returns 0 until kFirstSpeed seconds have passed.
   double speed(double time) {
@@ -265,7 +266,7 @@ void LiveRun::publish() {
   snapshot_ = next;
 }
 
-/// Waits until the next interval is due, or a command arrives that does not belong to the next interval.
+/// Waits until the next interval is due, the simulation is paused, or the object is destroyed.
 void LiveRun::keep_pace() {
   std::unique_lock lock(mutex_);
   if (!running_) return;

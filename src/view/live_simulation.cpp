@@ -23,7 +23,7 @@ void extend(LinearKeys& path, double value, double now, double next) {
   path.append(next, value);
 }
 
-/// Returns the diagonal of the box of all parts, m, each with a radius of its size.
+/// Returns the diagonal (m) of the box around all parts, where each part is a ball with its size as radius.
 double extent(const Simulation& simulation) {
   Eigen::AlignedBox3d all;
   for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
@@ -76,7 +76,7 @@ LiveSimulation::LiveSimulation(Scene& scene, double display_rate, int threads)
   bound_local_stiffnesses();
 }
 
-/// Makes the rest values that the user can change functions of time.
+/// Replaces each rest value that the user can change by a function of time.
 void LiveSimulation::free_rest_values() {
   for (const auto& part : scene_->body.parts()) {
     if (part->fixed() || part->continuum() != nullptr) continue;
@@ -188,9 +188,9 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   continue_from(std::move(state));
 }
 
-/// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the frame.
-/// Doubles the patch of nodes at the point, and with it the dragged mass, until they are the wanted ones, but
-/// not beyond kLargestPatch sizes of the part.
+/// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the frame. As
+/// long as stability would reduce the constants, doubles the patch of nodes at the point, and with it the
+/// dragged mass, but not beyond kLargestPatch sizes of the part.
 SpringConstants LiveSimulation::bound_drag(const SpringConstants& constants, Point& at) const {
   constexpr double kLargestPatch = 0.5;
   const SpringConstants wanted = stable_->resolved(constants, inverse_mass(*simulation_, at));

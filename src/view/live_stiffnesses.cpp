@@ -1,4 +1,5 @@
-// The functions of LiveSimulation that change stiffnesses: of springs, parameters and local deformations.
+// The functions of LiveSimulation that change stiffnesses: of springs, parameters, their drives and local
+// deformations.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -133,7 +134,7 @@ void LiveSimulation::set_drive_stiffness(std::size_t i, double value) {
   continue_from(std::move(state));
 }
 
-/// Makes the factors of local stiffness that the user can change functions of time.
+/// Replaces each factor of local stiffness that the user can change by a function of time.
 void LiveSimulation::free_local_stiffnesses() {
   for (const auto& part : scene_->body.parts()) {
     if (part->fixed()) continue;

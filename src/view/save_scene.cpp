@@ -51,7 +51,8 @@ Json spring_of(const Drag& drag) {
   return json;
 }
 
-/// Returns the object of a parameter in the document. A number is its rest value.
+/// Returns the object of a parameter in the document. If the document has a number or nothing in this place,
+/// adds an object with the rest value of the scene.
 Json& parameter_of(Json& document, const LiveSimulation& simulation, const RestValue& rest) {
   const auto number = static_cast<std::size_t>(simulation.scene().body.index(*rest.part));
   Json& parameter = document["parts"][number]["parameters"][rest.parameter];

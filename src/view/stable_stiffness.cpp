@@ -28,7 +28,7 @@ bool is_stable(const Integrator& method, double K, double D, double h) {
   return method.growth(MatX<double>::Constant(1, 1, K), MatX<double>::Constant(1, 1, D), h) <= 1 + 1e-9;
 }
 
-/// Returns the largest number below an unstable one that is stable, by bisection.
+/// Returns, by bisection, the largest stable number below an unstable one.
 template <class Condition>
 double largest_below(double unstable, Condition&& stable) {
   double low = 0, high = unstable;
@@ -114,7 +114,8 @@ SpringConstants StableStiffness::bounded(const Integrator& method, const SpringC
   };
   if (!damping_is_stable(wanted.damping))
     bounded.damping = kDampingShare * largest_below(wanted.damping, damping_is_stable);
-  // The stiffness of the scene may stabilise a strong damping, and another motion does not have it.
+  // The stiffness of the scene may stabilise a strong damping. A motion without this stiffness must be stable
+  // too, so K is tested with and without present_.
   const auto stiffness_is_stable = [&](double stiffness) {
     const double K = stiffness * inverse_mass / kStiffnessShare, D = bounded.damping * inverse_mass;
     return is_stable(method, K, D, step_) && is_stable(method, present_ + K, D, step_);

@@ -71,11 +71,12 @@ struct ContactPair {
 
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
-/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes. The drive
-/// changes when a joint, plane or obstacle switches, or when the prescribed end of a spring or joint, a
-/// force, a torque, a rest value, a plane or gravity changes. A part stays awake while its drive changes, or
-/// while it touches a part or plane with prescribed motion. A force by a function (PointForce::custom) counts
-/// as changing at all times.
+/// searched. A sleeping part wakes when an awake part touches it, or when a cause of its motion changes. A
+/// cause changes when a joint, spring, plane or obstacle switches, or when the prescribed end of a spring or
+/// joint, a load, a rest value, the factor of local stiffness or gravity changes. A part stays awake while a
+/// cause changes, or while it touches a part or plane with prescribed motion. Loads that read the state, and
+/// forces by a function (PointForce::custom), change at all times. A distributed force that reads only its
+/// own points does not change.
 struct Sleep {
   double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; must be > 0
   double after = 0.5;  ///< time at rest after which a part falls asleep, s; must be > 0
@@ -96,10 +97,11 @@ struct ContactSettings {
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over speed before
   ImpactOrder impacts = ImpactOrder::simultaneous;
-  /// Largest violation of the laws of contact, as a share of the largest speed that the impulses on bodies
-  /// that touch each other stop (contact/README.md). At rest this is the speed that gravity gives a body in a
-  /// step. At an impact it is 1 + e times the speed of the impact. The relative error of the impulses may be
-  /// larger, for instance in tall stacks. Not given: rounding.
+  /// Largest violation of the laws of contact, as a share of a reference speed. For a set of bodies that
+  /// touch each other, the reference is the largest speed that contact impulses stop (contact/README.md). At
+  /// rest this is the speed that gravity gives a body in a step. At an impact it is 1 + e times the speed of
+  /// the impact. The relative error of the impulses may be larger, for instance in tall stacks. If no
+  /// tolerance is given, only rounding errors are allowed.
   std::optional<double> tolerance{};
   /// Pairs with settings of their own. Two parts with a common joint touch only if a pair names both.
   std::vector<ContactPair> pairs;

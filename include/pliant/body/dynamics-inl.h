@@ -25,7 +25,7 @@ template <class S>
 void Dynamics::evaluate(const Evaluation<S>& e) const {
   detail::start_evaluation<S>(e);
   detail::evaluate_parts<S>(e);          // 1 positions, 2 mass, 3 forces without loads
-  detail::evaluate_loads<S>(e);          // 3 forces of springs, points and torques
+  detail::evaluate_loads<S>(e);          // 3 forces of loads
   detail::evaluate_islands<S>(e);        // 4 joints
   detail::evaluate_rigid_islands<S>(e);  // 1 to 5 of islands of rigid parts on ball joints
   detail::collect_accelerations<S>(e);   // 5 accelerations

@@ -102,8 +102,8 @@ class Dynamics {
   /// the factor.
   void evaluate_frame(double t, const VecX<double>& q, const VecX<double>& v, int part,
                       Workspace<double>& work) const;
-  /// Returns the kinetic and potential energy of some parts and of all springs with an end on one of these
-  /// parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are
+  /// Returns the kinetic and potential energy of some parts, and of all springs and drives that act on one of
+  /// these parts, J. parts: numbers of parts that have coordinates. work: scratch storage; its contents are
   /// ignored.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;
@@ -127,7 +127,7 @@ class Dynamics {
   /// The stages of one evaluation, see dynamics-inl.h.
   template <class S>
   void evaluate(const Evaluation<S>& e) const;
-  /// Adds the energies of an evaluated part, or of a spring, to the ledger.
+  /// Adds the energies of an evaluated part, of a spring or of a drive to the ledger.
   void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
   void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;
   void add_energy(const DriveModel& drive, const Evaluation<double>& e, Ledger& ledger) const;

@@ -20,8 +20,8 @@
 
 namespace pliant {
 
-/// The constant mass matrix of a rigid part. Parts that share their constants (part/constants_cache.h) share
-/// it, so that it stays in the cache from part to part.
+/// The constant mass matrix of a rigid part. Parts that share their constants (part/constants_cache.h) also
+/// share this object, which then stays in the processor's cache.
 struct RigidMass {
   /// constant: M (6 x 6), first moment and mass. floor: see SymmetricFactor. diagonal: whether factor and
   /// inverse are those of the diagonal of M (Part::use_diagonal_mass).
@@ -51,7 +51,7 @@ struct PartModel {
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
   VecX<double> rest;                    ///< rest values of the dynamic parameters at time 0
-  VecX<double> inertia_floor;  ///< `floor` of SymmetricFactor: a velocity with at most this inertia has none
+  VecX<double> inertia_floor;  ///< `floor` of SymmetricFactor: inertia up to this value is regarded as 0
   std::vector<Range> limits;   ///< limits of each dynamic parameter
   /// For a part without dynamic global parameters: the constant p, J and rates of the ports of the reference
   /// shape s.
@@ -125,7 +125,7 @@ struct TorqueModel {
 struct DistributedModel {
   const DistributedForce* force;
   int part;
-  int first_port;                        ///< its ports follow each other
+  int first_port;                        ///< number of its first port; its ports have consecutive numbers
   std::array<FunctionModel, 3> density;  ///< of the force
   FunctionModel pressure;
   bool has_density = false;    ///< whether the density is not zero
@@ -191,8 +191,8 @@ class Model {
   /// `body` must outlive the model.
   explicit Model(const MultiBody& body);
   /// Prepares some parts of a body, with their joints and loads. parts: their numbers in the body,
-  /// increasing. A joint or load is left out if none of these parts that has coordinates is at it. The parts
-  /// without coordinates at the other joints and loads must be among these parts.
+  /// increasing. The model contains the joints and loads that are on at least one of these parts that has
+  /// coordinates. All parts at these joints and loads, or read by these loads, must be among these parts.
   Model(const MultiBody& body, std::vector<int> parts);
 
   const MultiBody& body() const { return *body_; }
@@ -208,7 +208,8 @@ class Model {
   const std::vector<DistributedModel>& distributed_forces() const { return distributed_forces_; }
   const std::vector<DriveModel>& drives() const { return drives_; }
   const std::vector<CoordinateModel>& coordinates() const { return coordinates_; }
-  /// The sensors, each with its number in the body. A model of some parts has the sensors of these parts.
+  /// The sensors, and the number of each in the body. A model of some parts has only the sensors whose
+  /// signals are all in this model.
   const std::vector<FunctionModel>& sensors() const { return sensors_; }
   const std::vector<int>& sensor_numbers() const { return sensor_numbers_; }
   /// Pairs of parts that a load connects: it acts on both, or acts on one and reads the state of the other.
@@ -254,7 +255,7 @@ class Model {
   /// Whether the parts can step in clusters (simulate/clusters.h): contact is active, more than eight parts
   /// can move, none deforms locally, and not all of them are connected.
   bool forms_clusters() const;
-  /// Returns the sets of parts with coordinates that joints, springs and torques connect.
+  /// Returns the sets of parts with coordinates that joints and loads connect (load_connections()).
   DisjointSets connected_parts() const;
 
   /// Returns the state at time 0.

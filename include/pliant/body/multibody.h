@@ -27,7 +27,7 @@ namespace pliant {
 /// A linear spring and damper between two points a and b, with stiffness k and damping c. d is the vector
 /// from a to b. With rest length 0 the force on b is -k d - c d_dot. With a rest length > 0 the force on b is
 /// -(k (|d| - rest length) + c times the rate of |d|) d / |d|, and zero while |d| = 0. The force on a is
-/// opposite. With a stiffness or rest length that changes, the spring is a muscle: the ledger has the work of
+/// opposite. If stiffness, damping or rest length changes, the spring is a muscle: the ledger has the work of
 /// its elastic force as actuation, and no energy of the spring.
 struct Spring {
   std::string name;
@@ -83,8 +83,8 @@ class MultiBody {
   Stabilization stabilization;
   JointSolver joint_solver;
   ContactSettings contact;
-  /// No step crosses a multiple of 1 / stop_rate (1/s); 0: steps may end at any time. Each multiple is a
-  /// kink. A load that changes at a multiple then has no influence on earlier steps.
+  /// Rate of stops, 1/s. No step crosses a multiple of 1 / stop_rate. 0: steps may end at any time. Each
+  /// multiple is a kink. A load that changes at a multiple then has no influence on earlier steps.
   double stop_rate = 0;
 
   /// Adds a part. Returns a reference to the part, valid as long as the MultiBody. Throws
@@ -99,7 +99,8 @@ class MultiBody {
   Part& add(std::unique_ptr<Part> part);
 
   /// Prepares a part of this body, or one that will be added to it. Parts with equal descriptions share their
-  /// constants (part/constants_cache.h). Throws what Part::prepare() throws. Not for several threads at once.
+  /// constants (part/constants_cache.h). Throws what Part::prepare() throws. Only one thread at a time may
+  /// call this function.
   void prepare(Part& part) const { part.prepare(constants_); }
   /// Number of parts whose constants prepare() has computed; all others share constants.
   std::size_t n_computed() const { return constants_.computed(); }
@@ -129,17 +130,17 @@ class MultiBody {
   /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (twist and two
   /// components of the swing, rad), for signals and drives. It is zero at time 0 with undeformed parts,
   /// except for the position of a slider, for a hinge with from_axis and for a ball joint with
-  /// BallAxes::rotation. Later calls for the same joint return its first coordinate. Throws
+  /// BallAxes::rotation. Later calls for the same joint return the result of the first call. Throws
   /// std::invalid_argument for joints of other types.
   const Joint& coordinate(const Joint& joint, const BallAxes& ball = {});
   /// Limits the angle of a hinge (rad) or the position of a slider (m) to [lower, upper], with a restitution
   /// from 0 to 1. Adds the one-sided joints "NAME.lower" and "NAME.upper". Throws std::invalid_argument
-  /// unless lower < upper, upper - lower < 2 pi for a hinge, and for joints of other types.
+  /// unless lower < upper, for a hinge also upper - lower < 2 pi - 0.1, and for joints of other types.
   void limit(const Joint& joint, double lower, double upper, double restitution = 0);
-  /// Limits the swing of a ball joint, the angle between the axes of both sides, to (0, pi); adds the
-  /// one-sided joint "NAME.swing". Limits its twist to [lower, upper]; adds "NAME.lower" and "NAME.upper".
-  /// The coordinate of the joint defines the axis. Throws std::invalid_argument for other numbers and other
-  /// joints.
+  /// limit_swing() limits the swing of a ball joint, the angle between the axes of both sides, to at most max
+  /// (rad), between 0 and pi - 0.05. The function adds the one-sided joint "NAME.swing". limit_twist() limits
+  /// the twist to [lower, upper] (rad) and adds "NAME.lower" and "NAME.upper". The coordinate of the joint
+  /// defines the axes. Both functions throw std::invalid_argument for other numbers and other joints.
   void limit_swing(const Joint& joint, double max, double restitution = 0);
   void limit_twist(const Joint& joint, double lower, double upper, double restitution = 0);
   /// Adds a drive on a row of a coordinate, or on a dynamic parameter of a part. The drive has no force until

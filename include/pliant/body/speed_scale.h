@@ -16,9 +16,9 @@ inline double lever(const PartModel& m, int k) {
   return 1;
 }
 
-/// Returns the factors that convert the local coordinates of a part to lengths, m: 1 for nodes, the size of
-/// the part for angles of an energy, 1 / kg^(1/2) for modes, whose amplitudes contain the square root of
-/// mass.
+/// Returns the factors that convert the local coordinates of a part to lengths, m: 1 for nodes, and the size
+/// of the part for angles of an energy. Amplitudes of modes have the unit m kg^(1/2); their factor is
+/// 1 / sqrt(mass of the part).
 inline VecX<double> local_levers(const PartModel& m) {
   if (m.local->oscillators() != nullptr)
     return VecX<double>::Constant(m.n_d(), 1 / std::sqrt(m.part->total_mass()));

@@ -14,11 +14,11 @@ namespace pliant {
 enum class Work {
   damping,         ///< D of the global parameters, and damping of local deformation
   drag,            ///< drag nu M v
-  spring_damping,  ///< dampers of the springs
-  anchors,         ///< prescribed motion of ends of springs and joints
+  spring_damping,  ///< dampers of springs, and of drives whose energy is in the ledger
+  anchors,         ///< prescribed motion of ends of springs, joints and drives
   actuation,       ///< drives, muscles; changes of rest values, gravity, local stiffness
-  forces,          ///< forces at points, and torques
-  limits,          ///< limits of parameters, and taut strings
+  forces,          ///< forces at points, distributed forces and torques
+  limits,          ///< limits of parameters and joints, and taut strings
   contact,         ///< normal impulses of contacts, and separation of overlapping parts
   friction,        ///< friction at contacts
   baumgarte,       ///< Baumgarte's terms of closing joints, and of closed joints that are not projected
@@ -39,8 +39,8 @@ enum class JointMode : std::int8_t {
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
 /// start). A contact is stored only if it shares a moving part with other contacts and its impulse is not
-/// zero. Contacts on single nodes are not stored, nor are contacts that moving parts connect with such a
-/// contact: their impulses start at zero. The impulses of limits and strings start at zero too.
+/// zero. Contacts on single nodes of a mesh, and contacts that moving parts connect with such contacts, are
+/// not stored: their impulses start at zero. The impulses of limits and strings start at zero too.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
@@ -48,8 +48,9 @@ struct CachedContact {
   Vec3<double> force;
 };
 
-/// Step length and other results of the last step of a part, with which its next step begins, if parts step
-/// in clusters (simulate/clusters.h). The parts of a cluster have equal values after a step.
+/// Step length and other results of the last step of a part, if parts step in clusters
+/// (simulate/clusters.h). The next step of the part uses these results. The parts of a cluster have equal
+/// values after a step.
 struct StepMemory {
   double h = 0;                 ///< length of the next step, s; 0 before the first step
   double error = 0;             ///< State::error of the last step of its cluster
@@ -79,8 +80,9 @@ struct State {
   /// impulses, so that forces without a cause, for instance of a part wedged between two walls, do not
   /// persist.
   int contact_cache_age = 0;
-  /// Of each part, if the parts step in clusters; else empty. The values of this state are then: h the length
-  /// of an interval of the clusters; error, contact_residual and contact_cache_age the largest of all parts.
+  /// Of each part, if the parts step in clusters; else empty. If parts step in clusters, h of this state is
+  /// the length of an interval of the clusters; error, contact_residual and contact_cache_age are the largest
+  /// values of all parts.
   std::vector<StepMemory> step_memory;
 
   double time() const { return start + static_cast<double>(step) * h; }

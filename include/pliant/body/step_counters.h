@@ -29,8 +29,8 @@ struct StepCounters {
   long factorisations = 0;  ///< factorisations of the matrices of implicit methods
   long impacts = 0;         ///< impacts whose time within the step was located
   long contact_sweeps = 0;  ///< sweeps over all contacts of a cluster, summed over the clusters
-  /// Clusters whose search was repeated with compliant contacts, see CoulombResult::fallbacks
-  /// (solve/coulomb_system.h).
+  /// Clusters whose search for contact impulses was repeated with compliant contacts, see
+  /// CoulombResult::fallbacks (solve/coulomb_system.h).
   long contact_fallbacks = 0;
   long contact_cutoffs =
       0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts

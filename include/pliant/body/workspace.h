@@ -36,7 +36,7 @@ struct PartWorkspace {
   /// those that LocalDeformation::forces() computes.
   VecX<S> f;
   Vec<S, kWorks> power;             ///< power (W) of the works of this part: damping, drag, actuation
-  std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
+  std::vector<Vec3<S>> port_force;  ///< force of the loads at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
   SymmetricFactor<S> factor;  ///< L D L^T of M
   VecX<S> a_r;                ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x

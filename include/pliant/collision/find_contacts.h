@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-/// Not thread-safe, not even its const functions: it keeps scratch storage from call to call.
+/// The class is not thread-safe: its const functions write to scratch storage that is kept from call to call.
 class ContactFinder {
  public:
   /// model: must outlive this object. Parts that deform locally are left to MeshFinder. Throws
@@ -51,9 +51,10 @@ class ContactFinder {
   }
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Returns a contact with a plane at the state and time of the last call of find(): the material point of
-  /// side a stays; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane
-  /// does not act, and for parts without nearly flat regions, whose contact points follow from the state.
+  /// Returns a contact with a plane, moved to the state and time of the last call of find(). Side a keeps its
+  /// material point; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane
+  /// does not act, for parts without a hull, and for parts without nearly flat regions. The contact points of
+  /// the latter follow from the state.
   std::optional<Contact> follow(const Contact& contact) const;
   /// Points of a part that are nearer to each other than this (m) are one contact. contact: its side a is a
   /// part without local deformation.

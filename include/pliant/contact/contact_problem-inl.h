@@ -29,8 +29,8 @@ inline Mat3<double> axes(const Contact& contact) {
   return axes;
 }
 
-/// A parameter is at a limit if its distance, as a displacement, is at most this share of the size of the
-/// part.
+/// A parameter is at a limit if its distance from the limit, as a displacement, is at most this share of the
+/// size of the part.
 inline constexpr double kAtLimit = 1e-6;
 
 /// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
@@ -43,8 +43,8 @@ inline int near_limit(const PartModel& m, int k, const State& state) {
   return limits.max - value <= distance ? 1 : 0;
 }
 
-/// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad counts
-/// as a displacement by twice the extent of the part, which is twice its size. With a smaller weight of
+/// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad is
+/// equivalent to a displacement by four sizes of the part, twice its extent. With a smaller weight of
 /// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
 inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
   constexpr double of_displacement = 0.25;

@@ -23,9 +23,9 @@ struct ContactSolution {
 class ContactProblem {
  public:
   /// work: as evaluate_touched() left it for these contacts. state, contacts and work must outlive this
-  /// object. start: if not nullptr, the state at the start of the motion. Parameters that were then at a
-  /// limit, or within 1e-6 sizes of it, count as at the limit: they have left it in the motion only because
-  /// the contacts did not act.
+  /// object. start: if not nullptr, the state at the start of the motion. A parameter that is at a limit in
+  /// this state, or within 1e-6 sizes of it, is treated as at the limit: it has left the limit in the motion
+  /// only because the contacts did not act.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts, const State* start = nullptr);
 

@@ -300,9 +300,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   }
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // The work of forces during the displacement by the impulses is added. Methods with a reach of 1
-  // (FreeMotion::reach) compute the work of forces from the velocities at the start of the motion. This work
-  // is already zero for a resting part, and includes displacements for h seconds.
+  // Adds the work of forces during the displacement by the impulses. Methods with a reach of 1
+  // (FreeMotion::reach) need this at nodes only: they compute the work of forces from the velocities at the
+  // start of the motion. That work is zero for a resting part, and includes displacements for h seconds.
   if (motion.force_time < h || by_displacement)
     state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (damped) damping->correct(state);

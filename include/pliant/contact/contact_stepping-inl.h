@@ -33,8 +33,9 @@ inline constexpr std::size_t kMaxLocatedPairs = 3;
 /// The step fails if a motion in which no part passes through another would be at most 1 / kMaxMotions of the
 /// rest of the step.
 inline constexpr double kMaxMotions = 1e4;
-/// In a cluster, a model of some parts of a body, changes of friction are located for smaller tolerances
-/// only. For larger ones step doubling keeps the error, and heaps take a third of the time.
+/// In a cluster (a model of some parts of a body) changes of friction are located only for tolerances below
+/// this. For other tolerances step doubling alone controls the error, which takes a third of the time for
+/// heaps.
 inline constexpr double kFrictionTolerance = 1e-4;
 /// Largest number of impacts that are located in a step.
 inline constexpr int kMaxLocatedImpacts = 200;
@@ -42,8 +43,9 @@ inline constexpr int kMaxLocatedImpacts = 200;
 /// gap is at most this share of the largest gap of a resting contact.
 inline constexpr double kTouchingGap = 1e-6;
 
-/// With a tolerance, long steps leave small gaps at resting contacts. Residuals count from this speed on, in
-/// the same unit; without a tolerance they count from kMinImpactSpeed on.
+/// With a tolerance, residual_speed() is zero up to this speed, in the unit of kMinImpactSpeed; without a
+/// tolerance, up to kMinImpactSpeed. The bound is lower with a tolerance, because long steps leave small gaps
+/// at resting contacts.
 inline constexpr double kMinResidualSpeed = 1e-5;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
@@ -150,7 +152,7 @@ struct ContactStepping::Progress {
 /// One motion of the method within a step, and the contacts that it may cause.
 struct ContactStepping::Motion {
   FreeMotion free;
-  ContactFinder::Neighbourhood predicted, travelled;  ///< before the motion; from the actual travel
+  ContactFinder::Neighbourhood predicted, travelled;  ///< predicted before the motion; found after it
   std::vector<Contact> resting;                       ///< resting contacts at its start
   std::vector<Contact> contacts;                      ///< contacts at its end
 
@@ -455,7 +457,8 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
 
 /// Resolves the impacts at the contacts of the motion in sequence, at its end: first the resting contacts,
 /// whose impulses stand for forces, and then the impacts, which these contacts transmit. Impacts that remain
-/// have no rebound. Without an impact faster than FreeMotion::min_impact_speed there is no sequence.
+/// have no rebound. Without restitution, or without an impact faster than FreeMotion::min_impact_speed, there
+/// is no sequence.
 PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext& step) {
   const FreeMotion& free = motion.free;
   const Pairs rest(motion.resting);

@@ -27,8 +27,8 @@ class ContactStepping {
   /// must outlive it.
   ContactStepping(const Dynamics& dynamics, const ContactFinder& whole) : ContactStepping(dynamics, &whole) {}
 
-  /// Begins a step, for which step() may be called several times, with an empty record. undo_step() replaces
-  /// the record by that of the step before.
+  /// Begins a step with an empty record, to which several calls of step() may append. undo_step() replaces
+  /// the record by that of the previous step.
   void begin_step();
   void undo_step();
   /// Wakes sleeping parts that a force, joint, plane, obstacle or prescribed motion may move within h seconds
@@ -118,9 +118,9 @@ class ContactStepping {
   struct Fractions {
     double length = 0;              ///< of all parts, s
     bool even = true;               ///< whether all parts but the last had their full length
-    bool equal_contacts = true;     ///< whether all but the last resolved as many contacts as the whole step
+    bool equal_contacts = true;     ///< whether all but the last part have as many contacts as the whole step
     std::size_t last_contacts = 0;  ///< number of the first contact of the last part in the record
-    VecX<double> gravity_velocities;  ///< n_v: velocities by gravity of parts that lost a contact
+    VecX<double> gravity_velocities;  ///< n_v: velocities by gravity after a pair lost all contacts
     bool finite = false;
   };
   Fractions step_fractions(int n, Integrator& method, StepContext& step, const Whole& whole,

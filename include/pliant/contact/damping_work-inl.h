@@ -24,7 +24,7 @@ struct Weights {
 };
 inline constexpr Weights kLinear{2.0 / 3, 1.0 / 6};
 
-/// Returns the factors for velocities that drag changes. x: nu h.
+/// Returns the factors for velocities that change in time as exp(-nu t) by a drag nu, 1/s. x: nu h.
 inline Weights of_drag(double x) {
   constexpr double small = 1e-3;  // the formulas lose digits below it; the series has an error of x^2 / 100
   if (x < small) return {kLinear.middle, kLinear.end + x / 12};

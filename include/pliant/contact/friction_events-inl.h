@@ -20,9 +20,10 @@ namespace pliant {
 
 namespace friction_events {
 
-/// Slides shorter than this multiple of the tolerance, in sizes of the smaller part, do not matter. A contact
-/// sticks if it slides at most at this distance times slow_rate(), plus the speeds of these multiples of the
-/// residual of the last contact solution and of rounding.
+/// Slides shorter than kSlowInTolerances times the tolerance, in sizes of the smaller part, do not matter. A
+/// contact sticks if its speed is at most the sum of three speeds: this distance times slow_rate(),
+/// kSlowInResiduals times the residual of the last contact solution, and kSlowInRounding rounding errors of
+/// the largest speed.
 inline constexpr double kSlowInTolerances = 1e-2, kSlowInResiduals = 8, kSlowInRounding = 64;
 /// A probe is a motion of this share of the motion that is examined. It shows whether contacts that stick at
 /// its start begin to slip.
@@ -40,7 +41,7 @@ inline constexpr double kSlipTolerance = 1e-6;
 inline constexpr double kSampledLoads = 0.618, kEqualLoads = 1e-9;
 /// Accuracy of the time of an event, as a share of the motion.
 inline constexpr double kTimeTolerance = 1e-14;
-/// Smallest positive value of the function whose end is sought, in values at which the search ends.
+/// locate_end() treats values of the function up to this share of its target as zero.
 inline constexpr double kZero = 0.1;
 /// Largest number of trial times of a search, and of halvings that look for a time before the event.
 inline constexpr int kMaxTrials = 80, kMaxHalvings = 20;
@@ -54,7 +55,7 @@ struct Interval {
 /// Returns the time at which a function of time ceases to be positive: a time at which its value is near
 /// `target`, or the end `outside` of an interval of length `accuracy`. Beyond the time sought the function is
 /// zero within rounding, so the search alternates between secants through positive values and halvings.
-/// Values up to kZero times `target` count as zero.
+/// Values up to kZero times `target` are treated as zero.
 template <class F>
 double locate_end(Interval interval, double target, double accuracy, F&& function) {
   double last = 0, last_value = 0;
@@ -209,7 +210,7 @@ PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion
 }
 
 /// Returns a short motion from the end of another motion. At a kink (Model::next_kink) it has the loads
-/// before the kink: those after it act in the next step only.
+/// before the kink: the loads after the kink act in the next step only.
 PLIANT_INLINE FrictionEvents::Trial FrictionEvents::probe(const Examined& motion, const Trial& from) {
   const Model& model = dynamics_.model();
   const double h = friction_events::kProbe * motion.free.h, end = from.free.end();

@@ -35,7 +35,7 @@ class FrictionEvents {
   /// Returns the time from the start of the motion to the first event of its resting contacts that is found,
   /// s; none if there is no event before the end of the motion. A contact that stops and slides on in the
   /// same direction within the motion has no event that is found. tolerance: of the simulation; slower
-  /// sliding than this tolerance allows counts as sticking. Contacts at nodes of meshes have no events.
+  /// sliding than this tolerance allows is treated as sticking. Contacts at nodes of meshes have no events.
   std::optional<double> first(const Examined& motion, double tolerance);
 
  private:
@@ -92,7 +92,7 @@ class FrictionEvents {
   Workspace<double> work_;
   std::vector<Start> starts_;
   double short_ = 0;  ///< shorter slides do not matter, m
-  double slow_ = 0;   ///< slower sliding counts as sticking, m/s
+  double slow_ = 0;   ///< slower sliding is treated as sticking, m/s
 };
 
 }  // namespace pliant

@@ -18,9 +18,9 @@ namespace impact_sequence {
 
 /// Largest number of impacts in a sequence: kMaxImpacts, and kMaxImpactsOfPair more for each pair.
 inline constexpr std::size_t kMaxImpacts = 1000, kMaxImpactsOfPair = 10;
-/// Approach speeds up to this share of the largest one of connected bodies at the start are rounding. So are
-/// those that the impulses leave: up to kLeftPerTolerance times the tolerance of contact, because the speed
-/// that impulses stop includes the rebound, which is at most as fast as the approach.
+/// Approaches are no impacts if their speed, as a share of the largest one of connected bodies at the start,
+/// is at most kRounding, or kLeftPerTolerance times the tolerance of contact. This tolerance refers to the
+/// sum of approach and rebound, and the rebound is at most as fast as the approach.
 inline constexpr double kRounding = 1e-10, kLeftPerTolerance = 2;
 /// Approach speeds that differ by at most this share, or by kEqualResiduals times the residual of the
 /// impulses in this step, are equal.
@@ -59,7 +59,7 @@ PLIANT_INLINE void ImpactSequence::set_slowest(const Model& model, double min_sp
                                                std::vector<Pair>& pairs) {
   const double tolerance = model.body().contact.tolerance.value_or(0),
                share = std::max(impact_sequence::kRounding, impact_sequence::kLeftPerTolerance * tolerance);
-  // Each pair is an element, and so is each part. A body is represented by the first part of its island.
+  // The sets contain pairs and parts. A body is represented by the first part of its island.
   const std::size_t n = pairs.size();
   DisjointSets connected(n + model.parts().size());
   for (std::size_t k = 0; k < n; ++k)

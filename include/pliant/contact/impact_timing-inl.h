@@ -25,8 +25,9 @@ inline constexpr int kMaxTrials = 60;
 /// The sides of an impact are apart at the start of the motion if their gap is larger than this, in sizes of
 /// the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
-/// Sides whose gap is not positive at the start touch all the time if neither the dense output nor steps show
-/// a gap at one of the times h 2^-k for k from 1 to kMaxHalvings. h is the length of the motion.
+/// Sides whose gap is not positive at the start touch all the time if the dense output shows no gap at the
+/// times h 2^-k for k from 1 to kMaxHalvings, or if steps of the method then find none. h: length of the
+/// motion.
 inline constexpr int kMaxHalvings = 20;
 /// Accuracy of the time on the dense output, as a share of the motion.
 inline constexpr double kPathTolerance = 1e-9;

@@ -31,11 +31,12 @@ std::optional<double> locate_impact(StepContext& step, const ContactFinder& find
 double gained_velocity(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                        const Contact& contact);
 
-/// Sets Contact::since of contacts at the end of a motion: the time since their sides met, s, at their
-/// present normal velocity, at most the length of the motion. If the sides do not overlap or do not approach,
-/// the time is force_time() of the motion. Sets Contact::rebound of overlapping sides that approach, and
-/// approached faster than motion.min_impact_speed already at the start of the motion, if the rebound is
-/// faster than this speed too. Contacts whose `since` is positive, the resting contacts, do not change.
+/// Sets Contact::since (s) of contacts at the end of a motion. This is the time since their sides met,
+/// computed as gap / present normal velocity, and at most the length of the motion. If the sides do not
+/// overlap or do not approach, the time is force_time() of the motion. Sets Contact::rebound if three
+/// conditions hold. The sides overlap and approach at the end of the motion. They approached faster than
+/// motion.min_impact_speed at its start. The restitution times their approach speed at the impact exceeds
+/// min_impact_speed. Contacts whose `since` is positive, the resting contacts, do not change.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

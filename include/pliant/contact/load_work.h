@@ -1,5 +1,5 @@
-// The work of loads without potential energy (forces, torques, muscles, drives) during displacements by
-// contact impulses and by the separation of overlapping bodies.
+// The work of loads without potential energy during displacements by contact impulses and by the separation
+// of overlapping bodies. These loads are forces, torques, muscles and drives (body/actuation/README.md).
 #pragma once
 
 #include <vector>

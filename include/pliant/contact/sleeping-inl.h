@@ -108,7 +108,7 @@ PLIANT_INLINE Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& rest
   find_switches();
 }
 
-/// Finds the muscles, and the drives of joints and parameters, that change.
+/// Adds a Drive (sleeping.h) for each muscle, and for each drive of a joint or parameter that is not passive.
 PLIANT_INLINE void Sleeping::find_actuation() {
   auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
   for (const SpringModel& s : model_.springs())
@@ -134,8 +134,8 @@ PLIANT_INLINE void Sleeping::find_actuation() {
   }
 }
 
-/// Finds the drives that change: rest values, factors of local stiffness, forces, torques, springs, drives of
-/// joints and parameters, prescribed motions at springs and joints, and gravity.
+/// Adds a Drive (sleeping.h) for each cause that may change: rest values, factors of local stiffness, forces,
+/// torques, springs, drives of joints and parameters, prescribed motions at springs and joints, and gravity.
 PLIANT_INLINE void Sleeping::find_drives() {
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];

@@ -19,7 +19,7 @@ namespace soft_contact {
 /// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation.
 inline constexpr double kMaxOverlap = 400;
 /// A step that begins with a contact at nodes deeper than this, in the same unit, separates bodies, and is
-/// not repeated. It is more than ContactResolution leaves (contact_resolution::kMeshOverlap).
+/// not repeated. It is more than ContactResolution leaves (contact_separation::kMeshOverlap).
 inline constexpr double kMaxOverlapAtStart = 1000;
 /// Largest number of rounds that look for nodes that keep the positions of the halves.
 inline constexpr int kMaxRounds = 3;
@@ -27,7 +27,7 @@ inline constexpr int kMaxRounds = 3;
 /// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
 /// step with the share s is b(s) = halves + s (halves - whole) + s (1 + s) / 2 excess, if energies are
 /// quadratic. halves, whole: balances of both results, J, negative if they lose energy. extrapolated: b(1),
-/// J.
+/// J, which determines excess.
 inline double share_without_gain(double halves, double whole, double extrapolated) {
   if (!(extrapolated > 0)) return 1;
   if (!(halves < 0)) return extrapolated <= halves ? 1 : 0;
@@ -71,10 +71,11 @@ inline void copy_nodes(const Model& model, const ContactSide& side, const State&
 }  // namespace soft_contact
 
 /// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). Such
-/// a step of linearly_implicit is one of linearly implicit Euler, which damps oscillations by a rate of half
-/// of omega^2 h. The extrapolation has second order, and damps by a rate of order h^3. Nodes that it
-/// would move into a body keep the positions of the halves. If rigid contacts or modes differ, the result is
-/// that of the halves; if the halves fail, it is that of the whole step.
+/// a step of linearly_implicit is one of linearly implicit Euler, which damps an oscillation with the
+/// frequency omega by a rate of omega^2 h / 2. The extrapolation has second order, and damps by a rate of
+/// order h^3. Nodes that it would move into a body keep the positions of the halves. If rigid contacts,
+/// sleeping parts, or modes of limits or joints differ, the result is that of the halves; if the halves fail,
+/// it is that of the whole step.
 PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, StepContext& step,
                                                           const Before& before, double length,
                                                           double tolerance) {
@@ -145,10 +146,10 @@ PLIANT_INLINE bool ContactStepping::copy_deep_nodes(double t, const State& full,
   return any;
 }
 
-/// Chooses what a step of soft contact is extrapolated from. A node that extrapolation would move into a body
-/// keeps the position of the halves: it met the body in one of both results only. The share is below 1 where
-/// extrapolation would add energy. start, halves, whole: states at the start of the step, and at its end
-/// after the two halves and after the whole step.
+/// Chooses the coarse state and the share of the extrapolation of a soft contact step. A node that
+/// extrapolation would move into a body keeps the position of the halves: it met the body in one of both
+/// results only. The share is below 1 where extrapolation would add energy. start, halves, whole: states at
+/// the start of the step, and at its end after the two halves and after the whole step.
 PLIANT_INLINE ContactStepping::Coarse ContactStepping::soft_extrapolation(double t, const State& start,
                                                                           const State& halves,
                                                                           const State& whole,

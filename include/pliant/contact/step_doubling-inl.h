@@ -54,7 +54,7 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
 
 /// Returns the acceleration by gravity, m/s^2, of both parts of each resting pair that has lost all its
 /// contacts, and zero for other parts; n_v numbers. before: contacts that rested in the whole step; now:
-/// contacts that its first half has resolved. t: time, s.
+/// contacts that the first part of its repetition has resolved. t: time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
                                        double t) {
@@ -327,9 +327,9 @@ PLIANT_INLINE State ContactStepping::extrapolated(const State& finest, const std
   return state;
 }
 
-/// Changes c_dot of the parts that deform locally so that their linear momenta are `momenta`, as of
-/// local_momenta(). Momenta are extrapolated like velocities, but are not linear in the coordinates, and
-/// nodes that keep the positions of the halves change them. t: time of the state, s.
+/// Changes c_dot of the parts that deform locally so that their linear momenta are `momenta`, in the form
+/// that local_momenta() returns. Momenta are extrapolated like velocities, but are not linear in the
+/// coordinates, and nodes that keep the positions of the halves change them. t: time of the state, s.
 PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec3<double>>& momenta,
                                                  const std::vector<int>& parts, State& state) {
   if (momenta.empty()) return;
@@ -345,9 +345,10 @@ PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec
   }
 }
 
-/// Extrapolates the state of some parts, at the end of the finest steps, by Richardson. last: number of the
-/// first contact of the last of these steps in the record. Works are extrapolated, too. Energies are not
-/// linear in the coordinates and velocities, so that the energy changes by more than the works.
+/// Extrapolates the state of some parts, at the end of the finest steps, by Richardson extrapolation. last:
+/// number of the first contact of the last of these steps in the record. Works are extrapolated, too.
+/// Energies are not linear in the coordinates and velocities, so that the energy changes by more than the
+/// works.
 PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const std::vector<Coarse>& from,
                                                 std::size_t last, const std::vector<int>& parts) {
   const Model& model = dynamics_.model();

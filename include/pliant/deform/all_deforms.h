@@ -1,6 +1,6 @@
 // The list of global deformations. To add a deformation, include its file here and add its struct to
-// PLIANT_ALL_DEFORMS. The registry, the explicit instances, the JSON Schema, `pliant list` and the tests of
-// all deformations use this list.
+// PLIANT_ALL_DEFORMS. The registry, the explicit instantiations, the JSON Schema, `pliant list` and the tests
+// of all deformations use this list.
 #pragma once
 
 #include <tuple>

@@ -75,7 +75,7 @@ class DeformBy {
   detail::Prepared<Deform, T> prepared_;
 };
 
-/// The member `amplitudes` of a deformation, or the number of its parameters.
+/// The member `amplitudes` of a deformation; without this member, the number of parameters.
 template <class Deform>
 inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
 

@@ -1,7 +1,8 @@
 // CRC-32 checksums of recorded tables. A table of checksums has one row per recorded state. For each checked
 // table the row has the CRC-32 of all numbers of this table from the first one to the last one of the state.
-// The first row that differs is therefore the first damaged one. The last number of a row is the CRC-32 of
-// the other numbers of the row, so that damage in the checksums is not mistaken for damage in a table.
+// The first CRC-32 that does not match therefore belongs to the first damaged state. The last number of a row
+// is the CRC-32 of the other numbers of the row, so that damage in the checksums is not mistaken for damage
+// in a table.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // The contacts of the last step before each recorded state, and the reaction impulses of joints. The run
 // records both in contacts.npy and joint_impulses.npy, and writes them as contacts.csv and joint_impulses.csv
-// at its end. Impacts within a step divide the step into sections. For each of these last steps, contacts.npy
-// has one row per contact and section, and joint_impulses.npy one row per joint with an impulse.
+// at its end. Impacts within a step divide the step into sections. For the last step before a recorded state,
+// contacts.npy has one row per contact and section, and joint_impulses.npy one row per joint with an impulse.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,8 @@ ChecksumReader state_checksums(const std::filesystem::path& folder, const Model&
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {
  public:
-  /// Creates new tables. Throws std::system_error if a table exists.
+  /// Creates new tables. in_clusters: as for mode_columns() (state_row.h). Throws std::system_error if a
+  /// table exists.
   static RecordingWriter create(const std::filesystem::path& folder, const Model& model,
                                 bool in_clusters = false);
   /// Opens the tables in a folder and removes all states after the first `rows` states. Throws

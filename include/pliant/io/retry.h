@@ -6,7 +6,7 @@
 namespace pliant {
 
 /// Repeats a system call until no signal interrupts it (EINTR), and returns its result. Not for close(): on
-/// Linux the descriptor is closed even then.
+/// Linux an interrupted close() has closed the descriptor.
 template <class Call>
 auto retry(Call&& call) {
   auto result = call();

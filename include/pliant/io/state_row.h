@@ -36,11 +36,11 @@ std::vector<double> cached_contact_row(const CachedContact& contact);
 [[nodiscard]] bool read_cached_contact(const double* row, CachedContact& contact);
 
 /// Computes the row of modes.npy for a state. end_of_cached_contacts: one past the last row of the state in
-/// supports.npy. The last number of the row is a hash of all bits of the state.
+/// supports.npy. The last number of the row is the upper 53 bits of a hash of all bits of the state.
 void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row);
 
 /// Completes a state of the model whose q, v and contact cache are set, from its row of modes.npy. Returns
-/// false if the row is damaged or its hash differs from that of the state.
+/// false if the row is damaged or its last number does not match the hash of the state.
 [[nodiscard]] bool read_modes(const std::vector<double>& row, const Model& model, State& state);
 
 }  // namespace pliant

@@ -41,7 +41,7 @@ class TrajectoryTable {
   /// and the initial energy for the energy balance. Both must outlive the table.
   TrajectoryTable(const Scene& scene, Simulation& simulation);
 
-  /// Returns the columns of the table, which must outlive them.
+  /// Returns the columns of the table. The table must outlive the columns.
   TableColumns columns() const;
   /// Computes the row of a state: one number for each of columns(), in the same order.
   void row(const State& state, std::vector<double>& numbers);

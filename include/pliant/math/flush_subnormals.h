@@ -1,4 +1,4 @@
-// A guard that flushes subnormal numbers (below 2.3e-308) to zero while the guard exists. Arithmetic with
+// A guard that flushes subnormal numbers (below 2.2e-308) to zero while the guard exists. Arithmetic with
 // subnormal numbers is about a hundred times slower, and motions that decay along a chain of parts produce
 // many of them.
 #pragma once

@@ -1,7 +1,7 @@
 // Formulas in scenes, of time ("0.2*sin(2*pi*t)") and of named quantities ("-20*ball.z"). The parser turns
 // the text into a flat program in postfix order. A formula of time runs on second-order Taylor numbers, so
-// value, rate and second derivative are exact. A formula of named quantities runs on any scalar of
-// math/scalar.
+// value, rate and second derivative are exact. A formula of named quantities runs on double, Dual<1> or
+// Taylor2<double>.
 //
 //   sum     = product { ("+" | "-") product }          numbers  1  .5  2.5e-3
 //   product = unary { ("*" | "/") unary }              names    t  pi
@@ -76,13 +76,12 @@ class Formula {
   bool reads_time() const;
 
   /// For a formula without named quantities: returns the value and the first and second derivative with
-  /// respect to t. At a kink of abs, min or max
-  /// the derivatives are one-sided, towards larger t. At a jump of step, or of smoothstep(a, a, x), the
-  /// derivatives are zero. The result is not finite where the formula is not (1/t at 0); the caller checks
-  /// this.
+  /// respect to t. At a kink of abs, min or max the derivatives are one-sided, towards larger t. At a jump of
+  /// step, or of smoothstep(a, a, x), the derivatives are zero. The result is not finite where the formula is
+  /// not (1/t at 0); the caller checks this.
   Taylor2<double> at(double t) const;
 
-  /// Returns whether the formula does not contain t.
+  /// Returns whether the formula is one number, without t and without named quantities.
   bool is_constant() const;
   /// Returns whether the formula contains abs, min, max, step or smoothstep.
   bool has_branches() const { return has_branches_; }

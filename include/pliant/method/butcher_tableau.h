@@ -22,9 +22,9 @@ struct ButcherTableau {
   int order, stages;
   /// a: row by row the entries below the diagonal, from the second row on; b: weights; c: nodes.
   const double *a, *b, *c;
-  /// error: h sum error_i k_i is the difference from a method of lower order. second_error: that from a
-  /// method of still lower order. Each is nullptr if there is no such method. Otherwise it has one entry for
-  /// each stage, and one more for the end of the step if rates_at_end is true.
+  /// error: h sum error_i k_i is the difference from a method of lower order. second_error: the difference
+  /// from a method of still lower order. Each is nullptr if there is no such method. Otherwise each has one
+  /// entry for each stage, and one more for the end of the step if rates_at_end is true.
   const double *error, *second_error;
   int error_order;    ///< the estimate is O(h^(error_order + 1))
   bool rates_at_end;  ///< whether the estimate uses the rates at the end of the step

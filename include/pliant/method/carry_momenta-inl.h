@@ -1,6 +1,6 @@
 // Function body of carry_momenta.h. In the body frame the angular momentum L of each part about its centre of
-// mass obeys L_dot = torque - omega x L. The new L is (L + h torque), evaluated before the step and rotated
-// by -h omega with the omega after the update.
+// mass obeys L_dot = torque - omega x L. The new L is L + h torque, with L and the torque before the step,
+// rotated by -h omega, with omega after v <- v + h v_dot.
 #pragma once
 
 #include <pliant/method/carry_momenta.h>

@@ -19,7 +19,7 @@ namespace esdirk {
 
 inline constexpr int kStages = 6;
 inline constexpr double kGamma = 0.25;
-/// Entries below the diagonal, row by row. Those on the diagonal are 0 in the first row and kGamma in the
+/// Entries below the diagonal, row by row. The diagonal entries are 0 in the first row and kGamma in the
 /// others. The last row has the weights of the method, whose last weight is kGamma.
 inline constexpr double kA[kStages][kStages] = {
     {},

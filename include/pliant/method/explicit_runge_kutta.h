@@ -53,7 +53,7 @@ class ExplicitRungeKutta : public Integrator {
   // State and time of the rates at the end of the last step, if its error estimate has evaluated them
   // (ButcherTableau::rates_at_end). These rates are then the first stage of the next step.
   State last_;
-  double last_t_ = kNoTime;           ///< time of the rates in the last column, s; kNoTime: there are none
+  double last_t_ = kNoTime;           ///< time of these rates, s; kNoTime: there are none
   Workspace<double> extension_work_;  ///< evaluations of the dense output
 };
 

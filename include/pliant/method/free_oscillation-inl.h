@@ -29,7 +29,8 @@ inline DampedCosSin damped_cos_sin(double omega2, double g, double t) {
     const math::SinCos<double> angle = math::sin_cos(kappa * t);
     return {decay * angle.cos, decay * angle.sin / kappa};
   }
-  // Overdamped: the decay rates are g - k and g + k. The first is omega^2 / (g + k), without cancellation.
+  // Overdamped: the decay rates are g - k and g + k. g - k is computed as omega^2 / (g + k), without
+  // cancellation.
   const double k = std::sqrt(-squared), slow = g + k > 0 ? omega2 / (g + k) : 0;
   const double decay = math::exp(-slow * t), loss = -std::expm1(-2 * k * t);
   return {decay * (1 - 0.5 * loss), k * t != 0 ? decay * loss / (2 * k) : decay * t};

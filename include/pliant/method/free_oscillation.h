@@ -19,7 +19,7 @@ struct OscillatorPropagator {
 };
 /// Returns the propagator over t (s).
 OscillatorPropagator propagator(const Oscillators& oscillators, double t);
-/// The entries qv and vv alone: q and q_dot after a time t, for q = 0 and q_dot = 1 at its start.
+/// The entries qv and vv alone: q and q_dot at time t, for q = 0 and q_dot = 1 at time 0.
 struct VelocityResponse {
   VecX<double> qv, vv;
 };

@@ -3,10 +3,10 @@
 // the load n_j at stage j, and the nodes c_i and weights a_ij of the tableau, stage i is
 //   u_i = exp(A c_i h) u_0 + int_0^(c_i h) exp(A t) (0, n_0) dt
 //         + h sum_j a_ij exp(A (c_i - c_j) h) (0, n_j - n_0)
-// For the end of the step the weights b replace a_ij, and for the error estimate those of the estimate. The
-// motion under a constant load is exact. If the nodes c_i decrease from one stage to the next, as in dop853,
-// exp(A (c_i - c_j) h) runs backwards in time, and damped motion grows. Tableaux with decreasing nodes
-// therefore do not suit strong damping.
+// For the end of the step the weights b replace a_ij. For the error estimate the weights of the estimate
+// replace a_ij. The motion under a constant load is exact. If the nodes c_i decrease from one stage to the
+// next, as in dop853, exp(A (c_i - c_j) h) runs backwards in time, and damped motion grows. Tableaux with
+// decreasing nodes therefore do not suit strong damping.
 #pragma once
 
 #include <vector>

@@ -200,9 +200,9 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   if (scale() != nullptr) {
     q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
-    // The errors of rates of implicit parts are multiplied by slow_rate() h, so that they measure
-    // displacements in the step. The step damps oscillations that are too fast for h instead of following
-    // them, and these oscillations also move the frames of their parts.
+    // The errors of rates of implicit parts are multiplied by min(1, slow_rate() h), so that they measure
+    // displacements in a step shorter than 1 / slow_rate(). The step damps oscillations that are too fast for
+    // h instead of following them, and these oscillations also move the frames of their parts.
     for (std::size_t i = 0; i < second_order_parts_.size(); ++i) {
       const PartModel& m = model.parts()[i];
       if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, slow_rate(model) * h);
@@ -226,7 +226,7 @@ PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
 }
 
 PLIANT_INLINE double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  // u = (x, v). This motion is explicit: A contains only x_dot = v.
+  // u = (x, v). The forces of this test equation are explicit: A contains only x_dot = v.
   const Eigen::Index n = K.rows();
   const MatX<double> I = MatX<double>::Identity(2 * n, 2 * n);
   MatX<double> F = MatX<double>::Zero(2 * n, 2 * n), filter = I;

@@ -18,7 +18,7 @@ using ConstantsKey = std::vector<std::uint64_t>;
 
 class ConstantsCache {
  public:
-  /// Returns the constants of parts with this key; nullptr if no such part has been prepared.
+  /// Returns the stored constants of parts with this key; nullptr if there are none.
   std::shared_ptr<const PartConstants> find(const ConstantsKey& key) const;
   /// Stores constants. Removes those that no part uses any more, whenever the number of keys has doubled.
   void store(ConstantsKey key, std::shared_ptr<const PartConstants> constants);

@@ -4,9 +4,9 @@
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
 // with P_v = F S(Gdot): S is Hooke's stress and Gdot the rate of Green's strain (local/solid/hooke.h). For
-// linear elasticity P_v is the linear stress at the strain rate sym(Fdot). The user gives material constants
-// instead of a matrix K_s. F and its derivatives come from dual numbers: the dual part of a material point is
-// a direction in the rest body. The rest shape is that of time 0.
+// linear elasticity P_v is the linear stress at the strain rate sym(Fdot). The user gives material constants;
+// a matrix K_s is optional. F and its derivatives come from dual numbers: the dual part of a material point
+// is a direction in the rest body. The rest shape is that of time 0.
 #pragma once
 
 #include <array>

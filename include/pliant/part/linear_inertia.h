@@ -1,7 +1,7 @@
 // Inertia of a part whose s is linear in its dynamic parameters q_1 ... q_n,
 //   s = s_0 + sum s_k q_k,   J = (s_1 ... s_n) constant.
 // The first moments sum m s_k and the second moments sum m s_k s_l^T, k, l = 0 ... n, are summed once over
-// the mass points. In a step they replace the sums of Eq. (11).
+// the mass points. In a step, these moments replace the sums of Eq. (11).
 #pragma once
 
 #include <pliant/math/scalar/dual.h>

@@ -21,9 +21,9 @@ class Part : public PartEvaluation {
   /// std::invalid_argument if the description contradicts itself, if the part folds over at its rest or
   /// initial values, or if its mass points, its elasticity or its local deformation cannot be made.
   void prepare();
-  /// Does the same, and shares the constants with all parts of equal description that were prepared with this
-  /// cache. Shared constants have the bits that prepare() computes. MultiBody::prepare() uses the cache of a
-  /// body.
+  /// Computes the constants as prepare() does, and shares them with all parts of equal description that were
+  /// prepared with this cache. Shared constants equal those of prepare() to the last bit.
+  /// MultiBody::prepare() uses the cache of a body.
   void prepare(ConstantsCache& known);
   bool prepared() const { return !changed(); }
 
@@ -47,7 +47,8 @@ class Part : public PartEvaluation {
   /// points.
   double size() const { return constants_->size; }
   /// Returns the smallest inertia of the k-th dynamic parameter (kg for a length, else kg m^2) that is not a
-  /// rounding error for a part of this mass and size. A diagonal entry of M up to this value counts as zero.
+  /// rounding error for a part of this mass and size. A diagonal entry of M up to this value is treated as
+  /// zero.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.
@@ -73,7 +74,8 @@ class Part : public PartEvaluation {
   void compute_size(PartConstants& out) const;
   void use_given_inertia(PartConstants& out) const;
   /// Computes the mass points and the inertia at rest. Returns the volume of a solid (m^3) or the area of a
-  /// shell (m^2), which only elastic material needs: with a mass distribution it takes another search.
+  /// shell (m^2) for elastic material. With a mass distribution the volume needs a second search; a part
+  /// without elastic material skips this search, and the result is then not its volume.
   double compute_inertia(PartConstants& out) const;
   void compute_elasticity(double volume, PartConstants& out) const;
 };

@@ -156,7 +156,7 @@ class PartDescription {
 
   // Settings that only prepare() needs.
   const std::optional<double>& given_mass() const { return total_mass_; }
-  /// nullptr if the user did not set them.
+  /// The next three functions return nullptr if the user did not set the value.
   const Inertia<double>* given_inertia() const { return given_inertia_.get(); }
   const LocalSettings* local_settings() const { return local_settings_.get(); }
   const ContinuumSettings* continuum_settings() const { return continuum_settings_.get(); }

@@ -46,11 +46,13 @@ class ShapeInterface {
   /// Returns the number of pieces whose convex hull is that of the solid; 0 if the shape has no support
   /// function.
   virtual int hull_pieces() const = 0;
-  /// Returns the point (m, body frame) of a piece of the hull that is farthest in the direction of m, a
-  /// vector of the body frame that is not zero. The farthest of all pieces is on the surface. piece: from 0.
+  /// Returns the point (metres, body frame) of a piece of the hull that is farthest in the direction of the
+  /// vector m. m: body frame, not zero. piece: from 0. The farthest of the points of all pieces is on the
+  /// surface.
   virtual Vec3<double> support(const Vec3<double>& m, ShapeParameters a, int piece) const = 0;
-  /// Returns support() and its derivatives along the dual parts of m. Where they do not exist (at the axis of
-  /// an end face, and for exponents below 1 at m_x = 0, m_y = 0 or m_z = 0) some of them are zero.
+  /// Returns support() and its derivatives along the dual parts of m. Where these derivatives do not exist
+  /// (at the axis of an end face, and for exponents below 1 at m_x = 0, m_y = 0 or m_z = 0) some of them are
+  /// zero.
   virtual Vec3<Dual<3>> support(const Vec3<Dual<3>>& m, ShapeParameters a, int piece) const = 0;
   /// Whether contact may use the support function (shape/shape.h).
   virtual bool has_support(ShapeParameters a) const = 0;
@@ -58,7 +60,7 @@ class ShapeInterface {
   virtual bool has_flat_regions(ShapeParameters a) const = 0;
   /// Whether pieces 0 and 1 of the hull are flat faces with the normals z and -z.
   virtual bool has_end_faces() const = 0;
-  /// Whether the solid is its hull.
+  /// Whether the solid is equal to its convex hull.
   virtual bool is_convex(ShapeParameters a) const = 0;
   /// Returns e and its derivatives along three directions in (u, v, w). The dual parts of m define these
   /// directions; see material_with_tangents().

@@ -35,7 +35,7 @@ struct PreStepStorage {
 };
 /// Applies impulses before the coordinates move by h v. With these impulses, at the end of the step every
 /// parameter is within its limits, the ends of every slack or closed string are at most its length apart
-/// (closing strings are excepted), and every closed joint is closed if closed joints are projected. Sleeping
+/// (closing strings are excepted), and closed joints have no gap if they are projected. Sleeping
 /// islands are skipped. step.work: the evaluation at the start of the step. v_start: the velocities at the
 /// start of the step.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);

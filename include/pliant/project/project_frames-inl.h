@@ -25,7 +25,8 @@ namespace projection {
 /// Changes of the frame below this share of the size of the part are rounding.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
-/// K is regular if |sum m d s^T| over the nodes is at most this share of the smallest moment of inertia.
+/// K is regular if |sum m d s^T| over the nodes (mass m, displacement d, reference position s) is at most
+/// this share of the smallest moment of inertia.
 inline constexpr double kSmallChange = 0.3;
 /// Largest LocalWorkspace::condition(), the condition number of the matrix that determines the frame.
 inline constexpr double kMaxCondition = 1e8;

@@ -154,9 +154,10 @@ inline bool passes_limit(const PartModel& m, State& state) {
 }
 
 /// Sets the mode of open joints with a small gap and a small rate of the gap to closed. any_rate: whether the
-/// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint.
-/// With such a method, the bound of a small gap is therefore larger by twice this gap, up to kMaxGap, and the
-/// bound of a small rate grows with it. Returns whether any joint closed.
+/// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint,
+/// with bias = -gamma of Eq. (13) and the gains alpha and beta of Baumgarte's terms. With such a method, the
+/// bound of a small gap is therefore larger by twice this gap, up to kMaxGap, and the bound of a small rate
+/// grows with it. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -189,7 +190,7 @@ inline constexpr double kClosingShare = 0.1;
 /// Throws UnsatisfiableModel for a joint that should have closed by now, whose gap no longer shrinks, and
 /// which cannot close because its rows depend on rows of other joints that contradict them. step.work: the
 /// last evaluation of the step that ends at step.t. patience: time after which a joint should have closed, in
-/// units of 1 / beta; with 0, the gap may still shrink.
+/// units of 1 / beta; with 0, a joint whose gap still shrinks fails, too.
 inline void fail_on_unclosable_joint(StepContext& step, const Island& island, double patience = kPatience) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;

@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// Throws OutOfMemory, with the needed memory and the limit, if this process cannot have the memory that
-/// drawing a picture of this size needs. To be called before a GL library is loaded. width, height: pixels.
+/// drawing a picture of this size needs. Call it before a GL library is loaded. width, height: pixels.
 void require_picture_memory(int width, int height);
 
 /// Keeps its GL buffers between frames: if a body has the same triangles as in the previous frame, only its

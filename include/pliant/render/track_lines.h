@@ -19,8 +19,8 @@ class TrackLine {
 
   /// Returns the position of the tracked point at a state, m, world.
   Vec3<double> at(const State& state) const { return tracked_.at(state); }
-  /// Appends a point x (m, world) at a time t (s), unless it is not farther than `resolution` (m) from
-  /// the last point.
+  /// Appends a point x (m, world) at a time t (s), if it is farther than `resolution` (m) from the last
+  /// point.
   void append(double t, const Vec3<double>& x, double resolution);
   const std::vector<Vec3<double>>& points() const { return points_; }
 
@@ -35,9 +35,9 @@ class TrackLine {
 };
 
 /// Returns the lines of all tracks. The resolution of a line is a thousandth of the diagonal of the box
-/// around it, about a pixel of a picture that it fills. If the line between two recorded states is bent by
-/// more than that, the motion between them is interpolated (RecordedStep), at up to 64 points. Throws
-/// RecordingMismatch.
+/// around it, which is about a pixel if the line fills the picture. If the line between two recorded states
+/// is bent by more than the resolution, the motion between them is interpolated (RecordedStep) and drawn in
+/// up to 64 pieces. Throws RecordingMismatch.
 std::vector<TrackLine> track_lines(const std::vector<Track>& tracks, const Model& model,
                                    const Recording& recording);
 

@@ -1,6 +1,6 @@
 // The JSON value of a function of time: a number, a formula of t in quotes, key frames {"t": [...], "y":
-// [...]} with optional "end_rates", or a sum {"sum": [...]} of such functions. In the formula of a function
-// of time and state, names are allowed, too.
+// [...]} with optional "end_rates", or a sum {"sum": [...]} of such functions. The formula of a function
+// of time and state may also contain names of quantities of the scene, for example "ball.z".
 #pragma once
 
 #include <string>
@@ -13,14 +13,15 @@ namespace pliant {
 
 namespace schema {
 
-/// The type of a scalar function of time; unit: of its values.
+/// The type of a scalar function of time. unit: unit of its values.
 Type time_function(std::string unit);
 /// The type of a vector function of time: three functions [x, y, z], or key frames of points {"t": [...],
-/// "points": [[x, y, z], ...]}; unit: of its components.
+/// "points": [[x, y, z], ...]}. unit: unit of its components.
 Type time_vector(std::string unit);
-/// The type of a scalar function of time and state; unit: of its values; range: of a constant.
+/// The type of a scalar function of time and state. unit: unit of its values. range: allowed values of a
+/// constant function.
 Type state_function(std::string unit, Range range);
-/// The type of a vector function of time and state; unit: of its components.
+/// The type of a vector function of time and state. unit: unit of its components.
 Type state_vector(std::string unit);
 
 }  // namespace schema

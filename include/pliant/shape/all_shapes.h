@@ -1,5 +1,6 @@
 // The list of shapes. To add a shape, include its file here and add its struct to PLIANT_ALL_SHAPES. The
-// registry, the explicit instances, the JSON Schema, `pliant list` and the tests of all shapes use this list.
+// registry, the explicit instantiations, the JSON Schema, `pliant list` and the tests of all shapes use this
+// list.
 #pragma once
 
 #include <tuple>

@@ -36,7 +36,8 @@ struct Box {
     return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])),
                      T(math::abs(x[2]) / a[2]));
   }
-  /// The hull is that of the eight corners. The bits of a piece's number are the signs of its coordinates.
+  /// The pieces of the hull are the eight corners. Bit k of the number of a piece is 1 if coordinate k is
+  /// negative.
   static constexpr int hull_pieces = 8;
   template <class T>
   static Vec3<T> support(const Vec3<T>&, const Vec<T, 3>& a, int piece) {

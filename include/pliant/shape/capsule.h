@@ -54,7 +54,7 @@ struct Capsule {
     const T cap = s2 / math::where_positive(below, below, T(1));
     return math::where_positive(on_cap, math::where_positive(off_centre, cap, T(0)), side);
   }
-  /// The hull is that of the two end balls, first the upper one.
+  /// The pieces of the hull are the two end balls; piece 0 is the upper ball.
   static constexpr int hull_pieces = 2;
   template <class T>
   static Vec3<T> support(const Vec3<T>& m, const Vec<T, 2>& a, int piece) {

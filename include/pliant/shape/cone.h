@@ -40,7 +40,8 @@ struct Cone {
     const T zeta = x[2] / a[2];
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
-  /// The hull is that of the two end faces, first the upper one; a tip is an end face of size zero.
+  /// The pieces of the hull are the two end faces; piece 0 is the upper face. A tip is an end face of size
+  /// zero.
   static constexpr int hull_pieces = 2;
   static constexpr bool has_end_faces = true;
   static bool has_flat_regions(const Vec<double, 4>&) { return false; }

@@ -39,7 +39,7 @@ struct Cylinder {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
     return math::max(math::sqrt_from_zero(ring2), T(math::abs(x[2]) / a[2]));
   }
-  /// The hull is that of the two end faces, which are ellipses: first the upper one.
+  /// The pieces of the hull are the two end faces, which are ellipses; piece 0 is the upper face.
   static constexpr int hull_pieces = 2;
   static constexpr bool has_end_faces = true;
   static bool has_flat_regions(const Vec<double, 3>&) { return false; }

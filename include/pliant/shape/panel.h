@@ -13,12 +13,12 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< 45 degrees from an angle with sin = 0 (cos = 0); e varies as |sin|^eps (|cos|^eps)
+    power,     ///< 45 degrees, starting where sin = 0 (or cos = 0); e varies as |sin|^eps (or |cos|^eps)
   };
   Kind kind;
   double from = 0, to = 0;         ///< smooth and periodic panels: angles at the ends, rad
   int sign_cos = 1, sign_sin = 1;  ///< power panel: signs of cos and sin on it
-  bool along_sin = true;           ///< power panel: whether it begins at sin = 0 (else at cos = 0)
+  bool along_sin = true;           ///< power panel: whether it starts where sin = 0 (else cos = 0)
   double eps = 1;                  ///< power panel: exponent
 };
 

@@ -9,8 +9,8 @@
 //   mesh              MeshPattern of the surface mesh
 //
 // Optional members. ShapeInterfaceOf (part/shape_interface.h) has defaults for them. A shape has both gauge
-// and label, or neither; a gauge without label is not used. Their default is a Newton search, which needs a
-// star-shaped solid. Closed forms in the shape are faster than this search, and exact at the poles.
+// and label, or neither; a gauge without label is not used. The default of both is a Newton search, which
+// needs a star-shaped solid. Closed forms in the shape are faster than this search, and exact at the poles.
 //   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; must not
 //                     overflow
 //   label(x, a)       material point at the position x, the inverse of e; at the centre and on the z axis one
@@ -29,16 +29,15 @@
 //   half_sizes(a)     only for a box about the origin: its half sizes (metres)
 //   hull_pieces       number of pieces of the convex hull. Each piece is convex, and the hull of the solid is
 //                     the hull of all pieces
-//   support(m, a, piece)  point of a piece (metres, body frame) that is farthest in the direction of m, a
-//   vector of
-//                     any length but zero; a template on the scalar of m and a. The farthest one of all
-//                     pieces is on the surface. Requires hull_pieces, at most kMaxHullPieces
+//   support(m, a, piece)  point of a piece (metres, body frame) that is farthest along the vector m, which
+//                     has any length but zero; a template on the scalar of m and a. The farthest of these
+//                     points of all pieces is on the surface. Requires hull_pieces, at most kMaxHullPieces
 //   has_support(a)    whether contact may use the support function: no piece has flat faces or straight edges
 //                     other than end faces. Default: true
 //   has_flat_regions(a)  whether a piece has nearly flat regions, other than end faces. Default: true
 //   has_end_faces     exists only if pieces 0 and 1 of the hull are flat faces with the normals z and -z; its
 //                     value is not read
-//   is_convex(a)      whether the solid is convex if has_support(a). Default: true
+//   is_convex(a)      whether the solid is its hull; used only if has_support(a) is true. Default: true
 //   bounded_exponents exists only if a changing exponent strains the material by bounded amounts; its value
 //                     is not read
 //   linear_lengths    exists only if e is linear in the parameters that are lengths, for all values of the
@@ -66,7 +65,7 @@ struct Section {
 /// The pattern of the surface mesh of a shape.
 enum class MeshPattern { ball, torus };
 
-/// Most pieces of the convex hull of a shape.
+/// Largest number of pieces of the convex hull of a shape.
 inline constexpr int kMaxHullPieces = 8;
 
 /// Number of parameters of a shape.

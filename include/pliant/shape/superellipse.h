@@ -39,7 +39,7 @@ struct PlaneSupport {
 template <class T>
 PlaneSupport<T> superellipse_support(const T& m, const T& n, const T& eps) {
   const T most(kMaxConvexExponent), e = math::min(eps, most), slope = e / T(T(2) - e);  // q - 1
-  const T first = m - n;  // not negative: m is the larger component
+  const T first = m - n;  // if not negative, m is the larger component
   const T big = math::where_positive(-first, n, m), small = math::where_positive(-first, m, n);
   const T ratio = small / math::where_positive(big, big, T(1));
   const T power = power_from_zero(ratio, slope), sum = power * ratio + 1.0;  // (ratio^(q-1), 1 + ratio^q)

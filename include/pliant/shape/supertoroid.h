@@ -61,7 +61,8 @@ struct Supertoroid {
     const T width = (tube.x * sign_factor(outward) + a[3]) * diagonal;
     return {a[0] * width * x, a[1] * width * y, a[2] * tube.y * sign_factor(m[2])};
   }
-  /// Only round tubes and rings: others touch a plane with a face or an edge.
+  /// Returns whether both the tube and the ring are round. Other supertoroids touch a plane with a face or an
+  /// edge.
   static bool has_support(const Vec<double, 6>& a) {
     return std::min(a[4], a[5]) >= kMinRoundExponent && std::max(a[4], a[5]) <= kMaxRoundExponent;
   }

@@ -23,7 +23,7 @@ namespace integrator_choice {
 /// grow for a longer time; kSteps for other methods. The first of kShares equal shares of these steps is not
 /// counted, because steps grow and transients of the start decay there.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
-/// Longest trial, s.
+/// Longest simulated time of a trial, s.
 inline constexpr double kMaxTrialTime = 1e3;
 /// Cost of a factorisation of a dense matrix for n velocities: kFactorisation n^2 evaluations. An evaluation
 /// takes about 70 n ns and a factorisation about n^3 / 3 ns (bench/step_bench, on one core).
@@ -37,8 +37,8 @@ inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
 /// These steps are at most of third order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Estimated time of a trial, microseconds, after which it ends, and the least cost of a trial, evaluations.
-/// Small models do not reach this time.
+/// Estimated time of a trial, microseconds, after which it ends, and the least value of max_cost(),
+/// evaluations. Small models do not reach this time.
 inline constexpr double kTrialTime = 2e6, kMinCost = 30;
 /// Steps that every trial may take, whatever they cost.
 inline constexpr int kLeastSteps = 3;

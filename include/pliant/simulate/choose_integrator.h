@@ -17,8 +17,8 @@ inline constexpr const char* kAutomatic = "auto";
 /// The tolerance that is used with kAutomatic if none is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
-/// Returns whether the model has springs that act at time t (s), or a moving part with elasticity, damping or
-/// drag.
+/// Returns whether the model has drives, springs that act at time t (s), or a moving part with elasticity,
+/// damping or drag.
 bool has_stiffness(const Model& model, double t);
 
 struct IntegratorChoice {

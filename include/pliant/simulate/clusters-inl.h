@@ -22,13 +22,13 @@ namespace clusters {
 
 /// Largest number of simulations that are kept for clusters with the same first part.
 inline constexpr std::size_t kMaxKept = 4;
-/// A simulation is kept for this number of intervals, or up to twice as many.
+/// A simulation that is not used is kept for this number of intervals, or up to twice as many.
 inline constexpr long kKeptFor = 64;
 /// A time nearer than this to the end of an interval, in intervals, is the end.
 inline constexpr double kAtEnd = 1e-9;
 
-/// Least travel of a part in an interval, in sizes of its ball. Bodies that are nearer step together, so that
-/// they can rest on each other.
+/// Least travel of a part in an interval, in radii of the ball that contains the part. Bodies with smaller
+/// gaps step together, so that they can rest on each other.
 inline constexpr double kMinTravel = 1e-5;
 
 /// Returns an estimate of the distance that a point of a part moves relative to its frame in h seconds, m: by
@@ -151,8 +151,8 @@ PLIANT_INLINE void Clusters::mark_awake() {
     if (whole_.model_.parts()[at(i)].q0 >= 0 && !sleeps(whole_.state_, i)) awake_[at(sets_.root(i))] = true;
 }
 
-/// Joins two parts that can meet; a part that cannot move is reached by the other. Returns whether two sets
-/// have become one.
+/// Joins two parts that can meet. If one of them cannot move, records that the other reaches it. Returns
+/// whether two sets have become one.
 PLIANT_INLINE bool Clusters::join(int i, int j) {
   auto moves = [&](int part) { return whole_.model_.parts()[at(part)].q0 >= 0; };
   if (moves(i) && moves(j)) {
@@ -240,7 +240,7 @@ PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   Simulation& of = *cluster.simulation;
   extract_state(whole_.model_, whole_.state_, of.model_, of.state_);
   of.interval_ = whole_.interval_;
-  of.forget_counters();  // of a simulation of this interval that was not used
+  of.forget_counters();  // of an earlier simulation that was not used
   for (const int part : cluster.parts) turned_[at(part)] = 0;
   cluster.done = true;
   bool farther = false;

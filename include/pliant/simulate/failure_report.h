@@ -10,9 +10,9 @@ namespace pliant::failure_report {
 /// Returns a text that names the parts that have burst at a state; empty if there is none. A part has burst
 /// if a node is displaced by more than twice the size of the part.
 std::string burst_parts(const Model& model, const State& state);
-/// Returns the fault of a state after a step: "X is not a finite number", where X is a coordinate, velocity,
-/// gap or work, or the orientation of a part without direction; empty for a valid state. work: the last
-/// evaluation of the step.
+/// Returns the fault of a state after a step; empty for a valid state. Faults are a gap, velocity, coordinate
+/// or work that is not a finite number, squares whose sum is too large, and a quaternion that is not a
+/// rotation. work: the last evaluation of the step.
 std::string fault_of(const Model& model, const State& state, const Workspace<double>& work);
 /// Returns a text that names the first term of the equations of motion that is not finite at the start or at
 /// the end time of the step from a state. If all terms are finite, says that the motion has grown without

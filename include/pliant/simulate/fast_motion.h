@@ -1,5 +1,5 @@
 // The fastest small motions about a state: eigenvalues of the Jacobian of the equations of motion. With x a
-// small change of the coordinates, as velocities, and x_dot its rate,
+// small change of the coordinates, with one entry for each velocity, and x_dot its rate,
 //   d/dt (x, x_dot) = (x_dot, da/dq x + da/dv x_dot),
 // where a(t, q, v) are the accelerations with joints, limits, springs, elasticity and damping. An eigenvalue
 // -sigma +- i omega is a damped oscillation. Arnoldi's method (Saad, Numerical Methods for Large Eigenvalue
@@ -32,7 +32,7 @@ struct MotionPlace {
 class FastMotions {
  public:
   /// moves: for each velocity, whether it takes part in the motion; the others are kept constant. The
-  /// dynamics must outlive this object. state: its gains of Baumgarte's terms are those for its step length.
+  /// dynamics must outlive this object. state: its step length determines the gains of Baumgarte's terms.
   FastMotions(const Dynamics& dynamics, const State& state, std::vector<bool> moves);
 
   /// Adds up to `count` vectors to the Krylov space. Returns false if no more vectors can be added, because

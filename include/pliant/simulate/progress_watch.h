@@ -17,7 +17,7 @@ struct SlowProgress {
   long rejected = 0;     ///< number of rejected steps
   long impacts = 0;      ///< number of impacts whose time was located
   long evaluations = 0;  ///< number of evaluations of the accelerations
-  std::string fastest;   ///< what changes most in the last step (ErrorScale::worst)
+  std::string fastest;   ///< the block that changes most in the last step (ErrorScale::worst)
 };
 
 /// Counts the accepted steps of a simulation and their work in windows of consecutive steps.

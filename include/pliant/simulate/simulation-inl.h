@@ -84,7 +84,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   const bool projected = body.stabilization.projection.value_or(true);
   const bool first_order = !automatic && integrator_->order() == 1;
   // In contact, the steps of a method with implicit local elasticity are of first order. With a tolerance the
-  // policy ignores this reduction of the order, because the steps are short enough.
+  // joint policy ignores this reduction of the order, because the steps are short enough.
   const bool first_order_in_contact = !automatic && integrator_->local_is_implicit() && !scale_;
   dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {
@@ -190,9 +190,9 @@ PLIANT_INLINE double Simulation::stable_step_at_start() {
   }
 }
 
-/// Returns the failure of a step of h seconds with the place of the step, the parts that have burst before it
-/// and, if the step is fixed and longer, the largest stable step at the first state. t: time of the failure,
-/// s.
+/// Returns the failure of a step of h seconds. Its message has the place of the step and the parts that have
+/// burst before the step. If the step is fixed and longer than the largest stable step at the first state,
+/// the message has this largest step, too. t: time of the failure, s.
 PLIANT_INLINE NumericalFailure Simulation::completed(const std::string& what, double t, double h) {
   std::ostringstream message;
   message << failure_report::place(state_.time(), h) << failure_report::burst_parts(model_, state_) << what;
@@ -317,8 +317,8 @@ PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   switching_.follow_paths(after, kink, tolerance);
 }
 
-/// Adds the energies of the springs that begin or cease to act at a kink (s) to the work of anchors, and
-/// wakes their parts.
+/// Adds the energy of each spring that begins to act at a kink (s) to the work of anchors, subtracts the
+/// energy of each spring that ceases to act, and wakes their parts.
 PLIANT_INLINE void Simulation::switch_springs(double kink, double tolerance) {
   for (const SpringModel& spring : model_.springs()) {
     const bool begins = std::abs(spring.spring->on - kink) <= tolerance,

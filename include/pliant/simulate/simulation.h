@@ -163,7 +163,7 @@ class Simulation {
 ///   - the eigenvalues of the linearised equations of motion, with elasticity, damping, springs and joints,
 ///   - Baumgarte's terms with constant gains, if a joint is open or not projected,
 ///   - a rotation of half a radian per step,
-///   - one radian of phase per step of each mode, if contact is active.
+///   - one radian of phase per step of each mode, if impacts or springs can excite the mode.
 /// If the method integrates local elasticity implicitly, only springs, drag and rotation limit the parts that
 /// deform locally.
 double largest_stable_step(const Simulation& simulation);

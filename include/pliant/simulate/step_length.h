@@ -41,7 +41,7 @@ double first_step(StepContext& step, const ErrorScale& scale, int order);
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
                           StepCounters& counters, Attempt&& attempt) {
-  constexpr double kNearEnd = 0.99;  // a step longer than this share of `end` - now ends at `end`
+  constexpr double kNearEnd = 0.99;  // a step longer than this share of the time to `end` ends there
   const State start = state;
   const double now = start.time();
   bool rejected = false;

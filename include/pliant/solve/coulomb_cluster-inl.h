@@ -25,7 +25,7 @@ inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
 /// unless CoulombTolerance::share is given. Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPointMasses = 1e-6;
 /// Rounds of the search: maximum number of sweeps, and number of pairs of sweeps for the extrapolation (0: no
-/// extrapolation). Larger clusters (more than kManyContacts contacts) skip the rounds without extrapolation.
+/// extrapolation). Large clusters (more than kManyContacts contacts) skip the rounds without extrapolation.
 inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPointMasses{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
@@ -184,7 +184,7 @@ PLIANT_INLINE double CoulombCluster::weight_of(int i, double p, double share, do
   return accepted / std::max(rounding_, share * contact(i).W(0, 0) * p);
 }
 
-/// Returns the largest violation of the law, as a velocity: |W dp| for the change dp of an impulse that
+/// Returns the largest violation of the law, as a velocity |W dp|. dp is the change to the impulse that
 /// satisfies the law of its contact alone. share, accepted: see weight_of().
 PLIANT_INLINE double CoulombCluster::residual(double share, double accepted) const {
   double worst = 0;

@@ -4,8 +4,8 @@
 // contact. The law of each contact with (p_n - r u_n)+ > 0 is linearised, with the violation F and the
 // derivatives T and D of F by u and p:
 //   F + T du + D dp = 0.
-// The sides S give du = S dx, and the pushes Y give dx = sum Y dp over all contacts. The velocities of the
-// movers therefore change by
+// The sides S (J_k in coulomb_system.h) give du = S dx, and the pushes Y give dx = sum Y dp over all
+// contacts. The velocities of the movers therefore change by
 //   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
 // The unknowns are velocities and not impulses, because each mover is coupled to few others, often by more
 // contact rows than it has velocities.
@@ -29,7 +29,8 @@ inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
 inline constexpr double kMaxContactFill = 10;
 /// Newton's method reduces the residual to this fraction of exact_level(), for which one more step is usually
 /// enough. The second value is for warm starts, so that residuals do not accumulate from time step to time
-/// step. For this reason a warm start aims at rounding with any tolerance: bodies at rest stay at rest.
+/// step. For the same reason, the search from a warm start ends only at rounding, exact_level(true), even if
+/// the tolerance is larger. Bodies at rest then stay at rest.
 inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
 /// Weight of the proximal term, which keeps linearly dependent impulses near their present values. In each
 /// step it is multiplied by kProximalFactor, from kFirstProximal (kProximalNear for warm starts) down to
@@ -56,7 +57,8 @@ void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const Move
                         Eigen::Map<const Eigen::Matrix<double, 3, N>>(TS.data())));
 }
 
-/// Weights the velocities of a side S, from a row of the system on, by the speeds of the contact per unit.
+/// Raises the weight of each velocity of a side S to the largest entry of its column of S: the speed of the
+/// contact per unit of this velocity. row: row of the first velocity in the system.
 inline void raise_weights(const Eigen::Map<const Eigen::Matrix3Xd>& S, int row, MoverSystem& movers) {
   for (int c = 0; c < S.cols(); ++c) movers.raise_weight(row + c, S.col(c).lpNorm<Eigen::Infinity>());
 }

@@ -17,7 +17,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Weight of the rows of velocities that no contact sees.
+/// Weight of the rows of velocities on which no contact depends.
 inline constexpr double kLeastWeight = 0x1p-200;
 
 /// Inserts i into a sorted list unless the list contains it.
@@ -109,7 +109,7 @@ template <int N>
 Eigen::Matrix<double, N, N> MoverSystem::inverse_of(const Mover& k) const {
   using Numbers = Eigen::Matrix<double, N, N>;
   Numbers A = Eigen::Map<const Numbers>(numbers_.data() + k.numbers, k.size, k.size);
-  if constexpr (N == 3) return A.inverse();  // without pivots
+  if constexpr (N == 3) return A.inverse();  // closed form, without pivoting
   const auto weight = weight_.segment<N>(k.row, k.size);
   const auto scale = [&](Numbers& to, bool back) {
     for (int j = 0; j < k.size; ++j)

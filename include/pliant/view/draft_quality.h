@@ -59,7 +59,7 @@ class DraftQuality {
   Quality quality_ = Quality::draft;
   double mean_ = 0, mean_before_fall_ = 0;  // s
   int pictures_ = 0;                        // of the present quality
-  int may_fall_after_ = 0;                  // pictures of the present quality
+  int may_fall_after_ = 0;                  // number of pictures_ up to which the quality may not fall
 };
 
 }  // namespace pliant

@@ -24,11 +24,12 @@ struct ShownForces {
   bool any() const { return contacts || joints || loads; }
 };
 
-/// Returns the mean forces of the contacts of the last step, on their sides a.
+/// Returns the mean force of each contact of the last step, on its side a.
 std::vector<ForceArrow> contact_forces(const Simulation& simulation);
 /// Returns the forces of the joints at the state, on their first parts, at the first points of the joints.
 std::vector<ForceArrow> joint_forces(const Dynamics& dynamics, const State& state);
-/// Returns the forces of springs, on the parts at their ends, and the forces at points.
+/// Returns the forces of springs, on the parts at their ends, and the forces at points. A distributed force
+/// is one arrow: the sum of its forces, at the mean of their points weighted by their norms.
 std::vector<ForceArrow> load_forces(const Dynamics& dynamics, const State& state);
 
 }  // namespace pliant

@@ -65,10 +65,10 @@ class LiveRun {
   /// Chooses the forces of later snapshots.
   void show_forces(const ShownForces& shown);
 
-  /// Returns the last snapshot. It does not change.
+  /// Returns the last snapshot. A snapshot never changes; each later state has a new one.
   std::shared_ptr<const Snapshot> snapshot() const;
   /// Returns the samples of the tracks at time 0 and at the ends of all intervals since the last call, in
-  /// their order. A time that is not later than the one before follows a reset.
+  /// their order. After a reset, the time of the next sample is not later than that of the sample before.
   std::vector<TrackSample> take_track_samples();
   /// Performs a command before the next interval and waits for it. Throws what the command throws.
   void wait_for(Command command);
@@ -92,7 +92,7 @@ class LiveRun {
   bool running_ = false, quits_ = false;
   int single_steps_ = 0;
   double max_speed_ = 1;
-  // Of the thread of the simulation:
+  // Used by the thread of the simulation only:
   class Clock;
   std::unique_ptr<Clock> clock_;
   std::string failure_, refusal_, report_;

@@ -67,7 +67,7 @@ struct ParameterStiffness {
   double most;                        ///< fixed steps are stable up to this value, at most 100 times `first`
   Drive* servo;                       ///< nullptr if the user has not changed the stiffness
   std::shared_ptr<LinearKeys> added;  ///< the stiffnesses of the servo so far
-  double next;                        ///< value at the end of the next interval, that of the servo included
+  double next;  ///< value at the end of the next interval, with the stiffness of the servo included
 };
 
 /// The constant stiffness of a drive of a parameter, which the user can change.
@@ -136,22 +136,22 @@ class LiveSimulation {
   /// The gravity of the scene, if it changes in time.
   const std::optional<TimeVector>& changing_gravity() const { return changing_gravity_; }
 
-  /// The rest values of moving parts that are constant in the scene and have a stiffness. Their order does
-  /// not change.
+  /// The rest values, constant in the scene, of those parameters of moving parts that have a stiffness. Parts
+  /// with an elastic material (Part::continuum) are left out. The order does not change.
   const std::vector<RestValue>& rest_values() const { return rest_values_; }
   /// Changes a rest value linearly within the next interval. i: its number in rest_values(); value: m, rad
   /// or 1. Throws std::invalid_argument for a value out of range.
   void set_rest_value(std::size_t i, double value);
 
-  /// The stiffnesses of the springs of the scene that are constant and positive there. Their order does not
-  /// change.
+  /// The stiffnesses of those springs whose stiffness is constant and positive in the scene. Their order does
+  /// not change.
   const std::vector<SpringStiffness>& stiffnesses() const { return stiffnesses_; }
   /// Changes the stiffness of a spring linearly within the next interval. i: its number in stiffnesses();
   /// value: N/m. From then on the spring is a muscle: its energy becomes work of actuation. Throws
   /// std::invalid_argument for a value that is negative or not finite.
   void set_stiffness(std::size_t i, double value);
 
-  /// The stiffnesses of those parameters in rest_values() that have one and no drive in the scene.
+  /// The stiffnesses of those parameters in rest_values() that have a positive stiffness and no drive.
   /// Parameters of a part that deforms locally are left out if the method of integration treats its
   /// elasticity implicitly: servos are explicit. The order does not change.
   const std::vector<ParameterStiffness>& parameter_stiffnesses() const { return parameter_stiffnesses_; }
@@ -160,8 +160,8 @@ class LiveSimulation {
   /// std::invalid_argument for a value below ParameterStiffness::least, or not finite.
   void set_parameter_stiffness(std::size_t i, double value);
 
-  /// The stiffnesses of the drives of parameters that are constant and positive in the scene. Drives of
-  /// parts whose local elasticity is integrated implicitly are left out. The order does not change.
+  /// The stiffnesses of those drives of parameters whose stiffness is constant and positive in the scene.
+  /// Drives of parts whose local elasticity is integrated implicitly are left out. The order does not change.
   const std::vector<DriveStiffness>& drive_stiffnesses() const { return drive_stiffnesses_; }
   /// Changes the stiffness of a drive linearly within the next interval. i: its number in
   /// drive_stiffnesses(); value: N/m or N m. From then on the energy of the drive is work of actuation.
@@ -169,7 +169,7 @@ class LiveSimulation {
   void set_drive_stiffness(std::size_t i, double value);
 
   /// The stiffnesses of the local deformation of moving parts that have no factor in the scene. A part whose
-  /// fixed steps would be unstable with another factor is left out. The order does not change.
+  /// fixed steps would be unstable with a smaller factor is left out. The order does not change.
   const std::vector<LocalStiffness>& local_stiffnesses() const { return local_stiffnesses_; }
   /// Changes the factor of the laws of a part linearly within the next interval. i: its number in
   /// local_stiffnesses(). The change does work of actuation. Throws std::invalid_argument for a factor that
@@ -215,8 +215,8 @@ class LiveSimulation {
   Vec3<double> next_gravity_ = Vec3<double>::Zero();
 };
 
-/// Returns the stiffness with which a part of its mass oscillates twice in a second, and half of the critical
-/// damping.
+/// Returns the stiffness of a spring on which the mass of the part oscillates twice in a second, and half of
+/// the critical damping.
 SpringConstants drag_spring(const Part& part);
 
 }  // namespace pliant

@@ -11,9 +11,9 @@ struct Ray {
   Vec3<double> origin, direction;
 };
 
-/// Turns the eye about the target: about the axis `up` by -dx half turns, and up by dy half turns, at most to
-/// 1 degree from the vertical. dx, dy: movement of the mouse to the right and up, as a share of the height of
-/// the window.
+/// Turns the eye about the target: about the axis `up` by -dx half turns, and down by dy half turns, at most
+/// to 1 degree from this axis. The scene then follows the mouse. dx, dy: movement of the mouse to the right
+/// and up, as a share of the height of the window.
 void orbit(Camera& camera, double dx, double dy);
 /// Moves eye and target, so that a point at the distance of the target follows the mouse. dx, dy: as in
 /// orbit().

@@ -31,7 +31,7 @@ std::unique_ptr<Joint> coordinate_at_points(const Joint& joint) {
   return std::make_unique<JointOf<C>>(joint.name(), joint.points(), formula);
 }
 
-/// Returns the rotation of a ball joint: frames at its two points that coincide where the rotation is zero.
+/// Returns the coordinate of a ball joint, whose frames at the two points coincide when the rotation is zero.
 std::unique_ptr<Joint> ball_rotation(const Joint& joint, const BallAxes& ball) {
   const Point &a = joint.points()[0], &b = joint.points()[1];
   auto orientation = [](const Point& point) {

@@ -47,7 +47,7 @@ std::optional<Signal> length_signal(const std::string& quantity, const Point& a,
   return signal;
 }
 
-/// The quantities of a joint, and the row of its coordinate that each one is.
+/// A quantity of a type of joint: a row of the coordinate of the joint, or the rate of this row.
 struct JointQuantity {
   const char* joint;
   const char* quantity;

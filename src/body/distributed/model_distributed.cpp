@@ -29,7 +29,7 @@ Points surface_points(const Part& part, int resolution) {
   return points;
 }
 
-/// Returns the nodes of a mesh that carries the mass of the part; otherwise points inside the part.
+/// Returns the nodes of the mesh if the mesh carries the mass of the part; otherwise points inside the part.
 Points body_points(const Part& part, int resolution) {
   if (part.local() != nullptr && part.local()->mesh().mass.size() > 0)
     return {part.local()->mesh().nodes, {}, part.local()->mesh().mass};

@@ -70,7 +70,7 @@ Matrix32 plane_basis(const Vec3<double>& n) {
 
 }  // namespace
 
-/// Returns a jet of a with the vectors that the search needs in the frame of b.
+/// Turns those vectors of a jet of a that the search needs into the frame of b.
 FeatureJet NormalSearch::turned(FeatureJet jet) const {
   jet.x = pose_(jet.x);
   jet.tangents = pose_.R * jet.tangents;

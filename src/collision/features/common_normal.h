@@ -49,8 +49,8 @@ class NormalSearch {
   /// Returns the step from the middles of two patches with the normal n.
   NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
   /// How a search ends. found: at a common normal at which the distance is least. none: at another common
-  /// normal, or too far from the middles of the patches. failed: it does not converge; result.gap is then the
-  /// last gap, NaN if there is none.
+  /// normal, too far from the middles of the patches, or where no common normal is near. failed: the search
+  /// does not converge; result.gap is then the last gap, NaN if there is none.
   enum class End { found, none, failed };
   /// Searches from the middles of two patches and the normal result.normal.
   End search(const Patch& a, const Patch& b, CommonNormal& result) const;

@@ -10,21 +10,24 @@ namespace pliant {
 namespace {
 
 /// The first step of Newton's method decides whether two patches are searched. It must lead to points within
-/// kFirstMove radii of the patches, and to a normal within kFirstTurn angles of their cones plus kTurnSlack
-/// (rad). The gap to which it leads may exceed the limits by kGapSlack radii, and by kGapRounding sizes.
+/// kFirstMove radii of the patches. The normal may differ from the axes of the cones by kFirstTurn times
+/// their half angles plus kTurnSlack (rad). The gap may exceed the limits by kGapSlack radii, and by
+/// kGapRounding sizes.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
 /// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
 constexpr double kLeadsTo = 0.8;
-/// Contacts are one if the cosine of the angle between their normals exceeds this and they are near.
+/// Normals are equal if the cosine of the angle between them exceeds this. Contacts with equal normals are
+/// one if they are nearer to each other than FeatureLimits::one_point.
 constexpr double kOneContactCosine = 0.98;
-/// Overlaps that are deeper than this, in sizes of the smaller part, are tested.
+/// Overlaps that are deeper than this, in sizes of the smaller part, are tested by is_overlap().
 constexpr double kShallow = 1e-7;
 /// Number of points of an edge in this test, on each side of the contact; their distance is the overlap.
 constexpr int kEdgeSamples = 3;
-/// The candidates of a pair of parts stay valid while the parts move by at most this relative to each other,
-/// in sizes of the smaller part.
+/// The kept pairs of patches (PatchPairs) stay valid while the parts move by at most this relative to each
+/// other, in sizes of the smaller part.
 constexpr double kMargin = 0.1;
-/// Of contacts that are level along a curve or face, a pair with more contacts keeps this many.
+/// A pair of parts with more contacts than this keeps at most this many of those with equal gaps along a
+/// curve or face.
 constexpr std::size_t kMaxOnCurve = 8;
 
 /// Adds a contact; of contacts that are one, the deepest is kept.
@@ -38,8 +41,8 @@ void add_contact(const CommonNormal& at, double one_point, std::vector<CommonNor
     *twin = at;
 }
 
-/// Keeps those of contacts first, ..., last - 1 that are farthest apart, the first one among them. Returns
-/// the end of the kept contacts.
+/// Keeps the first of the contacts first, ..., last - 1, and those that are farthest from the kept ones, at
+/// most kMaxOnCurve in all. Returns the end of the kept contacts.
 template <class Iterator>
 Iterator move_outermost(Iterator first, Iterator last) {
   auto kept = first + 1;
@@ -123,7 +126,7 @@ class PairSearch {
     });
   }
   bool is_within_limits(double gap) const { return gap <= limits_.max_gap && gap >= -limits_.max_depth; }
-  /// Whether the first step leads to near a known contact of the same features.
+  /// Whether the first step leads to points near a known contact of the same features.
   bool is_known(const Patch& a, const Patch& b, const NormalStep& first) const {
     return std::any_of(known_.begin(), known_.end(), [&](const CommonNormal& at) {
       return at.a.feature == a.middle.feature && at.b.feature == b.middle.feature &&
@@ -145,8 +148,8 @@ class PairSearch {
     return first.length_a <= kFirstMove * a.bound.radius && first.length_b <= kFirstMove * b.bound.radius;
   }
   /// Whether the parts overlap at a contact with a negative gap. The surfaces of separate parts can have
-  /// common normals with negative gaps, too, because an acute edge has more normals than directions into the
-  /// part.
+  /// common normals with negative gaps, too, because the normals of an acute edge span a wider angle than the
+  /// solid at the edge.
   bool is_overlap(const CommonNormal& at) const {
     auto in_a = [&](const Vec3<double>& p) {
       return a_.features.contains(pose_.R.transpose() * (p - pose_.d));

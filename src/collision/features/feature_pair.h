@@ -45,9 +45,9 @@ struct PatchPairs {
                                        const FeatureLimits& limits);
 };
 
-/// Finds the contacts of parts a and b. pose: that of a in the frame of b, which is that of `found`, too.
-/// candidates: those of this pair of parts. `found` is overwritten. Returns false if a search has failed;
-/// then `found` may not be complete.
+/// Finds the contacts of parts a and b. pose: that of a in the frame of b. candidates: the kept pairs of
+/// patches of these two parts. `found` is overwritten; its vectors are in the frame of b. Returns false if a
+/// search has failed; then `found` may not be complete.
 bool touch_features(const PartPatches& a, const PartPatches& b, const RelativePose& pose,
                     const FeatureLimits& limits, PatchPairs& candidates, std::vector<CommonNormal>& found);
 

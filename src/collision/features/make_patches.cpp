@@ -31,7 +31,8 @@ void add_normals(const FeatureJet& jet, std::vector<Vec3<double>>& normals) {
   if (jet.dimension == 2) return normals.push_back(jet.normal);
   const int n = jet.n_inward;
   for (int i = 0; i < n; ++i) {
-    // The face that contains direction i and the edge, or for a vertex directions i and i + 1.
+    // At an edge, face i contains the inward direction i and the edge. At a vertex, face i contains the
+    // inward directions i and i + 1.
     const Vec3<double>& one = jet.inward[static_cast<std::size_t>(i)];
     const Vec3<double> other = jet.dimension == 1 ? Vec3<double>(jet.tangents.col(0))
                                                   : jet.inward[static_cast<std::size_t>((i + 1) % n)];

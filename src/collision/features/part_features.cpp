@@ -19,7 +19,8 @@ constexpr double kLeastRim = 1e-3;
 /// Largest exponent of a superquadric. The curvature of a more pointed one changes so much between patches
 /// that Newton's method often does not converge.
 constexpr double kMostPointed = 1.4;
-/// Number of patches of a straight edge of a box along its length, and of a side along its generators.
+/// Number of patches along a straight edge of a box, along both directions of its faces and of end faces, and
+/// along the generators of a side.
 constexpr int kPatchesAlong = 4;
 
 }  // namespace

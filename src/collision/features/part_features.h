@@ -37,7 +37,7 @@ struct FeatureJet {
 class PartFeatures {
  public:
   /// Whether the features of a part are known at these values: a box, or a shape with end faces whose rims
-  /// are ellipses, or a smooth shape without nearly flat regions.
+  /// are ellipses, or a smooth shape without nearly flat or sharply pointed regions.
   static bool exist(const Part& part, const ParameterValues<double>& values);
   /// part: its features exist. It must outlive this object.
   PartFeatures(const Part& part, const ParameterValues<double>& values);

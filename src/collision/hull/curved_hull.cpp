@@ -25,7 +25,7 @@ constexpr double kTurnOfInterval = 1;
 /// Largest turn of the chain (rad) over a part with one piece.
 constexpr double kMaxTurnOfPiece = 3;
 
-/// Returns about the largest angle (rad) between equal columns of two matrices.
+/// Returns about the largest angle (rad) between corresponding columns of two matrices.
 double turn_between(const Mat3<double>& F, const Mat3<double>& G) {
   return (F.colwise().normalized() - G.colwise().normalized()).colwise().norm().maxCoeff();
 }
@@ -114,7 +114,7 @@ bool CurvedHull::is_convex() const {
     return false;
   if (pieces > 2) return has_plane_faces();
   if (pieces == 2 && !has_developable_sides()) return false;
-  if (shape_.has_end_faces()) return true;  // a link maps the rims affinely
+  if (shape_.has_end_faces()) return true;  // each link maps the plane of a rim affinely
   const Vec3<double> half = half_sizes();
   for (std::size_t k = 0; k < SphereSamples::kCount; ++k) {
     const Vec3<double> nu = sample_normal(k, half);
@@ -285,9 +285,9 @@ void CurvedHull::add_edge(const Vec3<double>& m, const PieceFamily& edge, int n,
   add_inner(m, edge, stations, n, limits, points);
 }
 
-/// Appends the points of a family between its first and its last member that are farther than those near
-/// them, from the farthest points of n + 1 of its members. A curved interval that is level gets its middle,
-/// so that a bent rod lies on three points or more.
+/// Appends the points of a family, between its first and its last member, that are farther than the points
+/// near them. stations: the farthest points of n + 1 members. A curved interval that is level gets its
+/// middle, so that a bent rod has three contact points or more.
 void CurvedHull::add_inner(const Vec3<double>& m, const PieceFamily& family, const Stations& stations, int n,
                            const PointLimits& limits, std::vector<Vec3<double>>& points) const {
   const double level = kLevelSlope * part_.size();

@@ -17,7 +17,8 @@ struct PointLimits {
   double least_height = -std::numeric_limits<double>::infinity();
 };
 
-/// Adds a point; of points nearer to each other than limits.one_point only the farthest in the direction m.
+/// Adds a point, unless m . p < limits.least_height. Of points nearer to each other than limits.one_point,
+/// only the farthest in the direction m is kept.
 void add_farthest(const Vec3<double>& m, const Vec3<double>& p, const PointLimits& limits,
                   std::vector<Vec3<double>>& points);
 
@@ -32,13 +33,13 @@ class CurvedHull {
   CurvedHull(const Part& part, const ParameterValues<double>& values);
 
   /// Returns the point (m) of the image of a piece that is farthest in the direction m (unit vector), at
-  /// least near it. slope: if given, its derivative by m, m.
+  /// least among the points near it. slope: if given, the derivative of this point by m, m.
   Vec3<double> support(const Vec3<double>& m, int piece, Mat3<double>* slope) const;
   /// Returns the outward unit normal of end face 0 or 1.
   Vec3<double> end_face_normal(int piece) const;
   /// Whether the part is convex, tested at samples: a surface with one piece must be curved outwards, sides
   /// must be developable, and the faces of boxes must be plane. With dynamic parameters of the chain, parts
-  /// with several pieces count as not convex, because their sides are exact for single values only.
+  /// with several pieces are treated as not convex, because they can be convex at single values only.
   bool is_convex() const;
   /// Appends the points of the surface that are farthest in the direction m among the points near them, and
   /// the ends of all edges and generators. end_face: the number of an end face whose points are left out, or

@@ -117,7 +117,7 @@ Vec3<double> Hull::extents() const {
 
 /// Appends the points of a piece that are farthest if m turns by a small angle. Faces of superquadrics have
 /// their corners on the diagonals of the coordinate axes. Adds the farthest point, too, unless the face is
-/// level: then it is an arbitrary point of the face.
+/// level and this point is an arbitrary point of the face, not one of its corners.
 void Hull::add_face(const Vec3<double>& m, int piece, double one_point,
                     std::vector<Vec3<double>>& points) const {
   const std::size_t first = points.size();

@@ -24,9 +24,9 @@ class Hull {
   /// Returns whether the support points of a part are known at these values: its shape has a support
   /// function, and the chain is affine or CurvedHull::exists().
   static bool exists(const Part& part, const ParameterValues<double>& values);
-  /// Returns whether a part whose hull exists is its hull.
+  /// Returns whether a part is convex, so that it equals its hull. The hull must exist.
   static bool is_convex(const Part& part, const ParameterValues<double>& values);
-  /// Whether the part is known to be convex, or has not been tested.
+  /// convex: the part is convex, or is treated as if it were. unknown: the part may be not convex.
   enum class Convexity { convex, unknown };
   /// part: its hull exists; it and values must outlive this object. If the convexity is unknown and the chain
   /// is not affine, touching_points() searches from several starts.
@@ -54,11 +54,11 @@ class Hull {
 
   /// Returns the end face (0 or 1) whose normal is nearly m and that is wider than 2 one_point (m), or -1.
   int parallel_end_face(const Vec3<double>& m, double one_point) const;
-  /// Appends points of the rim of an end face that is nearly parallel to a plane with the normal m: the
-  /// farthest point in the direction m, unless the face is level and this is an arbitrary point of the rim;
-  /// and n_rim points (at most kMaxRimPoints) that keep their places relative to the unit vector `along`,
-  /// which is normal to m, and not to the part. Of points nearer to each other than one_point (m) the first
-  /// one is kept.
+  /// Appends points of the rim of an end face that is nearly parallel to a plane with the normal m. The first
+  /// one is the farthest point in the direction m, unless the face is level and this is an arbitrary point of
+  /// the rim. The others are n_rim points (at most kMaxRimPoints) that keep their places relative to the unit
+  /// vector `along` (normal to m), not relative to the part. Of points nearer to each other than one_point
+  /// (m) the first one is kept.
   void add_rim(const Vec3<double>& m, const Vec3<double>& along, int piece, double one_point, int n_rim,
                std::vector<Vec3<double>>& points) const;
   /// Appends the points that may touch a plane with the normal m: the farthest point of each piece in the

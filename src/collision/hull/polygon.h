@@ -15,7 +15,7 @@ inline double cross(const Point2& a, const Point2& b) {
 }
 
 /// Returns the numbers of the corners of the convex hull, counter-clockwise, by Andrew's monotone chains
-/// (1979). Of equal points the first one counts. Because of rounding the hull may keep points on its straight
+/// (1979). Of equal points at least one is kept. Because of rounding the hull may keep points on its straight
 /// sides.
 std::vector<std::size_t> convex_hull(const std::vector<Point2>& points);
 
@@ -32,8 +32,8 @@ std::vector<Point2> common_of_segments(const std::vector<Point2>& one, const std
 Point2 nearest_on_segment(const Point2& from, const Point2& to, const Point2& p);
 
 /// Returns the point of the segment or outline `own` that is nearest to the segment, outline or point
-/// `other`, which it does not overlap; if several are, as on parallel edges, a mean of them. same: distances
-/// that differ by less (m) are equal.
+/// `other`. The two must not overlap. If several points are nearest, as on parallel edges, returns a mean of
+/// them. same: distances that differ by less (m) are equal.
 Point2 nearest_point(const std::vector<Point2>& own, const std::vector<Point2>& other, double same);
 
 /// Returns the point of a segment or polygon that is nearest to p.

@@ -1,12 +1,12 @@
 // The largest separation of two convex parts. A sequence of small quadratic programs on the unit sphere finds
 // it. At a normal n, each piece i of a has the value a_i = n . x_i of its support point x_i and each piece j
-// of b the value b_j = n . y_j, so that s = min_i a_i - max_j b_j. In the tangent plane of n, with the step
-// t,
-//   maximise  alpha - beta - t.H t / 2  subject to  alpha <= a_i + x_i.t for all i,  beta >= b_j + y_j.t for
-//   all j.
-// H has the curvatures of the pieces, weighted by the multipliers of the last step, and s from the length of
-// n + t. Edges and faces of polyhedral parts are sets of active pieces; smooth parts have one active piece
-// each.
+// of b the value b_j = n . y_j, so that s = min_i a_i - max_j b_j. In the tangent plane of n, the step t is
+// the solution of
+//   maximise    alpha - beta - t.H t / 2
+//   subject to  alpha <= a_i + x_i.t for all i,  beta >= b_j + y_j.t for all j.
+// H contains the radii of curvature of the pieces, weighted by the multipliers of the last step, and s on its
+// diagonal, because the length of n + t is not 1. Edges and faces of polyhedral parts are sets of active
+// pieces; smooth parts have one active piece each.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -171,8 +171,8 @@ class Program {
   Program(const Side& a, const Side& b, const Eigen::Matrix2d& H, double equal)
       : a_(a), b_(b), H_(H), H_inverse_(H.inverse()), equal_(equal) {}
 
-  /// Tries all sets of active pieces, at most two more than one piece of each part, and returns the step of
-  /// the first set that satisfies the optimality conditions.
+  /// Tries the sets of active pieces: one piece of each part, and at most two more. Sets `step` to that of
+  /// the first set that satisfies the optimality conditions. Returns false if there is none.
   bool solve(Step& step) {
     for (int extra = 0; extra <= 2; ++extra)
       for (int i = 0; i < a_.count; ++i)

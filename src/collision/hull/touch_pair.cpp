@@ -16,7 +16,7 @@ namespace pliant {
 namespace {
 
 /// Points are part of a face if they are at most this far behind its nearest point, in units of the distance
-/// below which points are one. All points of an end face are.
+/// below which points are one. All points of an end face are part of it, at any distance.
 constexpr double kFaceDepth = 0.2;
 
 /// A face of one part: the corners of the convex hull of its points in the projection along the normal,
@@ -84,7 +84,7 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
 
 /// Returns the common part of two faces in the projection along the normal: corners of a polygon, ends of a
 /// segment, a crossing point of two segments, or nothing. Nothing is returned if a face has one corner, and
-/// no crossing point if is_point of a face. same: see merge().
+/// no crossing point if is_point is true for a face. same: see merge().
 std::vector<Point2> common_part(const Face& of_a, const Face& of_b, double same) {
   if (of_a.corners.size() == 1 || of_b.corners.size() == 1) return {};
   const bool clip_a = of_b.corners.size() > 2;
@@ -123,8 +123,8 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
     deepest = std::min(deepest, gap);
     found.push_back({origin + E * p + (on_b ? h_b : h_a) * n, gap});
   }
-  // Where no face touches a face, the contact is the point of s(n). It is also kept if it is deeper than the
-  // common corners, because a surface is not exactly flat.
+  // Where no face touches a face, the contact is the point that attains s(n) (hull_pair.h). This point is
+  // also added if it is deeper than the common corners, because a surface is not exactly flat.
   const double rounding = 1e-12 * (a.hull.size() + b.hull.size());
   if (separation.gap > max_gap || (found.size() > first && !(separation.gap < deepest - rounding))) return;
   const Face &own = on_b ? of_b : of_a, &other = on_b ? of_a : of_b;

@@ -18,13 +18,13 @@ namespace {
 constexpr double kSag = 0.02;
 /// Largest distance of a low point from the sample point that its search started from, in sizes.
 constexpr double kSpacing = 0.4;
-/// Largest depth of a part behind a face that supports it, as a share of the thickness of the part.
+/// Largest depth of a contact on a face, ridge or corner, as a share of the thickness of the part.
 constexpr double kMaxFaceDepth = 0.5;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
 /// A face does not support a point behind it that is nearer to a second face. The second face is nearer if
-/// its distance is less than kNearerShare times the depth of the point behind the first face. It has this
-/// effect only if the cosine between the normals of both faces is above kMinCosine.
+/// its distance is less than kNearerShare times the depth of the point behind the first face. This rule
+/// applies only if the cosine between the normals of both faces is above kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
 /// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
 /// of the faces that meet there.
@@ -37,7 +37,8 @@ constexpr double kSideStep = 1e-7;
 /// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
 /// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
-/// Number of intervals between the samples along an edge, and of bisections around the lowest sample.
+/// Number of intervals between the samples along an edge, and of the bisections for its lowest point and for
+/// the ends of a level range.
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
 constexpr double kSameContact = 0.02, kSameNormal = 0.01;

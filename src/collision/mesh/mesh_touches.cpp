@@ -25,9 +25,9 @@ constexpr double kTie = 1e-9;
 /// A point is straight behind a triangle if its squared distances to the triangle and to the plane of the
 /// triangle agree to this share.
 constexpr double kStraightAbove = 1e-6;
-/// The test of faces that a point may be behind is widened for rounding by this share of lengths and of
-/// squares of lengths. The foot of a point that is straight behind a face may be outside the face by less
-/// than kFootOutside times the depth, because kStraightAbove bounds the square of this ratio.
+/// The bounds in NearestOf::may_be_straight_behind() are widened for rounding by the share kBehindSlack of
+/// lengths and of squares of lengths. The foot of a point that is straight behind a face may be outside the
+/// face by less than kFootOutside times the depth, because kStraightAbove bounds the square of this ratio.
 constexpr double kBehindSlack = 1e-5, kFootOutside = 1.1e-3;
 /// An edge is not sharp if the sine of the angle between the normals of its triangles is at most this.
 constexpr double kNoTurn = 1e-6;
@@ -188,9 +188,9 @@ class NearestOf {
     squared_distances_.minCoeff(&near);
     const Candidates::Face& face = faces_[static_cast<std::size_t>(near)];
     const double square = square_to(face, nearest_weights(x, face.p0, face.p1, face.p2), x);
-    // If x is straight behind its nearest face, it is below the plane of this face, its depth there is at
-    // most its distance from `face`, and the foot of its perpendicular is in the ball of the nearest face or
-    // almost.
+    // If x is straight behind its nearest face, three conditions hold. x is below the plane of this face. The
+    // depth of x below this plane is at most its distance from `face`. The foot of its perpendicular is in
+    // the ball of the nearest face, or very near this ball.
     heights_ = normals_.col(0) * (x[0] - centres_.col(0)) + normals_.col(1) * (x[1] - centres_.col(1)) +
                normals_.col(2) * (x[2] - centres_.col(2));
     return ((heights_ <= kBehindSlack * radii_) &&

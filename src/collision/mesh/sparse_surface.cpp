@@ -14,9 +14,9 @@ namespace {
 
 /// A point is on a triangle if it is within this distance, in sizes of the part (Part::size()).
 constexpr double kOnTriangle = 1e-10;
-/// The dynamic parameters of a test differ from their rest values by these shares of their rest values or, if
-/// these are zero, of kProbe. Neighbouring parameters differ by other amounts: share * (1 + kUneven * k) with
-/// the number k of the parameter, modulo kUnevenPeriod.
+/// The test values of the dynamic parameters differ from their rest values by the shares of kShares of the
+/// rest values, or of kProbe where a rest value is zero. So that the shares of several parameters are not
+/// equal, parameter k gets share * (1 + kUneven * k), with k modulo kUnevenPeriod.
 constexpr std::array<double, 2> kShares{0.3, -0.2};
 constexpr double kProbe = 1, kUneven = 0.13;
 constexpr int kUnevenPeriod = 13;

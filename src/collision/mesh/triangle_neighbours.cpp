@@ -45,7 +45,8 @@ void for_each_edge(const std::vector<HalfEdge>& all, Act&& act) {
   }
 }
 
-/// Returns the angle of a triangle about one of its edges, rad.
+/// Returns the angle (rad) by which a triangle is turned about one of its edges. Triangles with a common edge
+/// have the same zero direction.
 double angle_about(const HalfEdge& edge, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles) {
   const Vec3<double> a = x.col(edge.ends.first), e = (Vec3<double>(x.col(edge.ends.second)) - a).normalized();
   Eigen::Index smallest = 0;

@@ -32,8 +32,8 @@ WholeFile::WholeFile(std::filesystem::path target) : target_(std::move(target)) 
     descriptor_ = retry([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
     if (descriptor_ < 0 && (errno != EEXIST || attempt >= 1000)) throw_file_fault(errno, "write", target_);
   }
-  // Shows other processes, also on other machines, that this file is being written. Some file systems have no
-  // locks; the file is written there too.
+  // The lock shows other processes, also on other machines, that this file is being written. On a file system
+  // without locks, the file is written without a lock.
   retry([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); });
 }
 

@@ -29,9 +29,9 @@ void require_same(const char* name, const Value& recorded, const Value& now, con
   throw RecordingMismatch(message + hint);
 }
 
-/// Returns the counts of the first evaluation with a new workspace, at the state of a simulation, that a
-/// later evaluation there does not repeat. A resumed run counts them twice: at its start, and when it is
-/// resumed. Returns no counts if the evaluation fails: the next step then reports the failure.
+/// Returns the counts of the work at the state of a simulation that only the first evaluation with a new
+/// workspace does. Without a correction, a resumed run would count this work twice: at its start, and when it
+/// is resumed. Returns no counts if the evaluation fails: the next step then reports the failure.
 Counters first_evaluation(const Simulation& simulation) {
   Workspace<double> work;
   auto evaluated = [&] {
@@ -86,8 +86,8 @@ void Run::write_inputs(const std::filesystem::path& folder) {
   }
 }
 
-/// Writes the scene and the meshes of its obstacles again if they are not as they were. The scene of this
-/// session has the same hash as that of the recorded run.
+/// Writes the scene and the meshes of its obstacles again if one of their files is missing or has changed.
+/// The scene of this session has the same hash as that of the recorded run.
 void Run::mend_inputs() {
   for (const auto& [file, checksum] : record_.checksums) {
     if (file != kSceneFile && !is_recorded_mesh(file)) continue;
@@ -188,8 +188,8 @@ struct Run::Continuation {
   RunWork work;                ///< of the run up to this state
 };
 
-/// Sets a continuation to a checkpoint that is later than the first `keep` recorded states. Returns false if
-/// there is none.
+/// Sets a continuation to a checkpoint that is later than its first `keep` recorded states. Returns false if
+/// there is no such checkpoint.
 bool Run::find_saved_state(const Recording& recorded, Continuation& from) {
   FoundCheckpoint found = find_checkpoint(folder_->path(), simulation_->model(), from.keep, schedule_.end());
   if (!found.damage.empty()) note(found.damage + "; the run continues from an earlier state");
@@ -229,9 +229,9 @@ Run::Continuation Run::find_continuation(const Recording& recorded) {
   return from;
 }
 
-/// Includes the first `states` recorded states in the run record, as the session that recorded them did. The
-/// notes of this session that were written to run.json are not repeated. Throws Interrupted if `stop` of the
-/// options returns true; the run can then be resumed again.
+/// Includes the first `states` recorded states in the run record, as the session that recorded them did.
+/// Notes that run.json already has are not repeated. Throws Interrupted if `stop` of the options returns
+/// true; the run can then be resumed again.
 void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
   record_.max_gap = record_.max_depth = record_.max_energy = 0;
   progress_->begin("read", static_cast<double>(states), "states");

@@ -34,8 +34,8 @@ class NamedRows {
   std::string names_;
 };
 
-/// A row of C_q or a component of an impulse counts as rounding error if it is at most this, relative to the
-/// terms of which it is the sum.
+/// A row of C_q or a component of an impulse is a rounding error if it is at most this fraction of the terms
+/// from which it is computed.
 constexpr double kCancelled = 1e-9;
 
 /// Returns the number of constraint rows of a joint that are zero in C_q. An example is a rod whose ends
@@ -57,8 +57,8 @@ int rows_without_direction(const JointModel& joint, const Workspace<double>& wor
   return count;
 }
 
-/// Returns whether joint j with a gap (m) is open. A joint is open while it closes; without projection, only
-/// if the gap is also larger than kClosedGap times the length of the joint.
+/// Returns whether joint j with a gap (m) is open: its mode is JointMode::closing. Without projection, the
+/// gap must also be larger than kClosedGap times the length of the joint.
 bool is_open(const Simulation& simulation, int j, double gap) {
   if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
   const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];

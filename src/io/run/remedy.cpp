@@ -99,7 +99,8 @@ Trial with_tolerance(const std::string& integrator, double tolerance) {
   return {integrator, 0, std::stod(rounded_text(exact)), "a tolerance of " + rounded_text(exact)};
 }
 
-/// Returns the trials with shorter fixed steps: first the largest stable step, then fractions of the step.
+/// Returns the trials with shorter fixed steps: first 0.9 times the largest stable step, if that is shorter
+/// than the failed step, then fractions of the failed step.
 std::vector<Trial> shorter_steps(Scene& scene, const FailedRun& failed) {
   std::vector<Trial> trials;
   const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
@@ -176,7 +177,8 @@ std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
       least_share = result.share;
       inaccurate = advice(trial, result.share);
     }
-    // The option --tolerance keeps the method of the scene, so that "auto" in its place is not refined.
+    // A trial with "auto" in place of the method of the scene is not refined: a user who follows the advice
+    // "a tolerance of E" keeps the method of the scene.
     if (trial.integrator == failed.integrator && refinements++ < kMaxRefinements)
       left.push_front(refined(trial, result.share));
   }

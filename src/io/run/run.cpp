@@ -25,8 +25,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kFlushEvery{250};
 constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
-/// The search for a remedy takes at most this multiple of the wall time of the failed run. It takes at least
-/// RunOptions::remedy_seconds, and at most kMaxRemedyShare times that.
+/// The search for a remedy may take kRemedyShare times the wall time of the failed run, but at least
+/// RunOptions::remedy_seconds, and at most kMaxRemedyShare times RunOptions::remedy_seconds.
 constexpr double kRemedyShare = 3, kMaxRemedyShare = 10;
 /// Words of the notes on steps without error control and on open joints, by which they are found again.
 constexpr const char* kUncontrolledText = "resting contacts of many bodies, or of soft ones, in ";
@@ -241,7 +241,7 @@ void Run::note_open_joints() {
                 text.empty() ? std::vector<std::string>() : std::vector<std::string>{text});
 }
 
-/// Replaces the notes for which is_old() is true by others.
+/// Replaces the notes for which is_old() is true by `notes`.
 void Run::replace_notes(bool (*is_old)(const std::string&), const std::vector<std::string>& notes) {
   record_.notes.erase(std::remove_if(record_.notes.begin(), record_.notes.end(), is_old),
                       record_.notes.end());
@@ -296,8 +296,8 @@ void Run::note_recorded() {
   track_sampling_->note(last_recorded_);
 }
 
-/// Includes a recorded state, at which the simulation is, in the largest and final values of run.json, and
-/// adds notes on it.
+/// Includes the present state of the simulation, which is recorded, in the largest and final values of
+/// run.json, and adds notes on this state.
 void Run::observe_state(const Ledger& ledger) {
   const Gaps gaps = widest_gaps(*simulation_);
   record_.max_gap = std::max(record_.max_gap, gaps.closed);
@@ -317,9 +317,9 @@ void Run::observe_state(const Ledger& ledger) {
   record_.energy_share = energies_->share();
 }
 
-/// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
-/// Notes are written before the states that they are about, because notes on engaging joints cannot be found
-/// again from states.
+/// Writes the contacts before the states, so that every recorded state has its contacts even if the process
+/// is killed. Notes are written before the states that they are about, because notes on engaging joints
+/// cannot be found again from states.
 void Run::flush(bool to_disk) {
   if (record_.notes.size() != written_notes_) write_record();
   if (contacts_) contacts_->flush(to_disk);

@@ -122,7 +122,7 @@ bool has_only_leftovers(const fs::path& folder) {
 /// its run is alive, because process numbers are used again, and the process may be on another machine. If
 /// there is no lock file, it is created: another process was killed while it removed the folder.
 void remove_if_abandoned(const fs::path& folder) {
-  if (fs::is_empty(folder)) {  // its process was killed before the lock was made, or makes it now
+  if (fs::is_empty(folder)) {  // no lock yet: the process was killed, or is about to make the lock
     ::rmdir(folder.c_str());
     return;
   }
@@ -363,7 +363,7 @@ void RunFolder::complete_beginning() {
   fs::remove(folder_ / kNewRunFile);
 }
 
-/// Removes the files of the old run, run.json first: the others alone are not a run.
+/// Removes the files of the old run, run.json first: without run.json the other files are not a run.
 void RunFolder::remove_old_run() {
   fs::remove(folder_ / kRunFile);
   for (const fs::path& file : files_of(folder_))

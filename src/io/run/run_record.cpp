@@ -208,7 +208,7 @@ void read_scene(const Json& scene, RunRecord& r) {
   r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
 }
 
-// Keys that are read with value() may be absent in the records of older versions.
+// Keys that are read with value() may be absent; a default value then replaces them.
 void read_options(const Json& options, RunRecord& r) {
   options.at("end").get_to(r.end);
   options.at("asked_step").get_to(r.requested_step);
@@ -225,7 +225,7 @@ void read_options(const Json& options, RunRecord& r) {
   options.at("command").get_to(r.command);
 }
 
-/// Reads a violation of the laws of contact; returns none if the record of an older version has none.
+/// Reads a violation of the laws of contact; returns an empty one if the record has none.
 ContactViolation read_violation(const Json& monitors, const char* key) {
   if (!monitors.contains(key)) return {};
   const Json& violation = monitors.at(key);

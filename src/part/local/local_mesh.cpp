@@ -106,7 +106,8 @@ NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<d
 }
 
 /// Returns the weights of a position x of a solid over the nodes of one element: the element in which the
-/// smallest barycentric coordinate of x is largest. If x is in a straight element, this is that element.
+/// smallest barycentric coordinate of x is largest. If elements are straight and x is inside the mesh, this
+/// element contains x.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Index in = 0;
   std::array<double, 4> L{};

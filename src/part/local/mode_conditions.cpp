@@ -55,7 +55,7 @@ MatX<double> orthonormal_basis(MatX<double> A, double dependent) {
 }
 
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
-  constexpr double dependent = 1e-9;  // relative distance below which a column of W counts as dependent
+  constexpr double dependent = 1e-9;  // columns of W with a smaller relative pivot are ignored
   const double mass = basis.mass[0];
   MatX<double> W = rest_frame(part, basis);
   normalise_columns(W);

@@ -22,7 +22,7 @@ namespace pliant {
 
 namespace {
 
-/// Minimum volume of an element, relative to the cube of its longest edge.
+/// Minimum Jacobian determinant of an element, relative to the cube of its longest edge.
 constexpr double kFlat = 1e-9;
 /// Maximum number of linear elements. The maximum of quadratic and enriched elements is a quarter of this
 /// number. More elements would need more than a few gigabytes.

@@ -84,8 +84,8 @@ class LogPanel {
       : panel_(panel), kinks_(kinks), nodes_(nodes) {}
 
   /// Adds n nodes. Their density decreases with the distance d from the kinks as 1 / (width + d): the kinks
-  /// are resolved, and every decay rate too. The rule ends where |near|^eps, which is a factor of the mass,
-  /// is e^-37, which is rounding relative to 1.
+  /// are resolved, and every decay rate too. `near` is the sine or cosine that vanishes at the axis. The rule
+  /// ends where |near|^eps, a factor of the mass, is e^-37, a rounding error relative to 1.
   void add(int n) {
     const double stretch = std::log1p(37 / (panel_.eps * kinks_.width));
     for (const QuadratureNode& node : gauss_rule(n)) {

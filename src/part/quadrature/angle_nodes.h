@@ -25,7 +25,7 @@ struct Kinks {
 /// Returns the nodes of panels with fixed exponents: n in each panel, but 2 n in a periodic panel.
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n);
 /// Returns the nodes of panels if an exponent is a degree of freedom: n in each panel, but 2 n in a periodic
-/// panel. In each quadrant, n further nodes lie between kinks.from and kinks.to if these differ.
+/// panel. If kinks.from and kinks.to differ, each quadrant has n further nodes between them.
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, const Kinks& kinks);
 
 }  // namespace pliant

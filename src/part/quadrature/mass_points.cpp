@@ -43,8 +43,8 @@ class MassIntegrands {
   static constexpr const char* subject = "mass matrix";
   static constexpr int kEach = 3;
   static constexpr double kTolerance = 2e-14, kRequired = 1e-12;
-  /// A mass distribution that jumps has no level that suffices. Its last level, 80 nodes in a panel, takes
-  /// seconds in place of a minute.
+  /// A mass distribution with jumps has no level that suffices. Its search ends at level 9 (80 nodes in a
+  /// panel) after seconds; kLastLevel would take a minute.
   int last_level() const { return shape_.distribution == nullptr ? kLastLevel : 9; }
 
   explicit MassIntegrands(const RestShape& shape) : shape_(shape), ranges_(shape.part) {
@@ -56,10 +56,10 @@ class MassIntegrands {
   }
   int n() const { return ranges_.n(); }
   int n_states() const { return n() == 0 ? 8 : 48; }
-  /// The kinks of the radial map move, and the integrands at some corners of the ranges differ from most
-  /// others. From 3 integrands for each dimension, errors of 7e-11 were measured; from 12, errors below
-  /// 1e-12. A bent and twisted cylinder has errors of 4e-12 from 3 integrands and of 1e-14 from 12. But a
-  /// bent and twisted supertoroid would need more than 2 million points from 12.
+  /// The kinks of the radial map move, and its integrands at some corners of the ranges differ from most
+  /// others. With 3 integrands for each dimension, errors of 7e-11 were measured for this map; with 12,
+  /// errors below 1e-12. All other parts use 3: a bent and twisted cylinder then has errors of 4e-12 (1e-14
+  /// with 12), but a bent and twisted supertoroid would need more than 2 million points with 12.
   Thinning thinning() const {
     if (!shape_.dynamic_exponents) return {1e-15};
     return {1e-14, shape_.part.shape().bounded_exponents() ? 12 : 3};
@@ -166,7 +166,7 @@ class MassIntegrands {
     return factors;
   }
   /// Returns the largest factors of scale_columns() in a state: 1e3 times the factors for the whole body.
-  /// Without a sample it returns infinity, because one column has all sections.
+  /// Without a sample the factors are infinity, because the only Column contains all sections.
   const Eigen::VectorXd& largest_factors(const State& state) const {
     constexpr double share = 1e-3;
     const auto number = static_cast<std::size_t>(state.number);
@@ -180,8 +180,8 @@ class MassIntegrands {
     }
     return largest;
   }
-  /// Scales each column of L, and the acceleration, to a root mean square of 1, so that small entries of M
-  /// count as much as large entries. Columns that are small in comparison with the whole body are multiplied
+  /// Scales each column of L, and the acceleration, to a root mean square of 1, so that small and large
+  /// entries of M have equal weight. Columns that are small in comparison with the whole body are multiplied
   /// by `largest` instead: they have large relative rounding errors, and do not matter for M.
   static void scale_columns(const std::vector<RestPoint>& points, const Eigen::VectorXd& largest,
                             Kinematics& all) {
@@ -321,7 +321,7 @@ MassPoints place_points(const Part& part, const MassDistribution* distribution, 
   const bool affine = shape.follows == Follows::affine;
   PlacedPoints placed = shape.by_sections ? place_slices(shape, integrands, 2 * doublings)
                                           : RingSearch(shape, integrands, !affine, 2 * doublings).run();
-  // A difference below this may be the error of the grid.
+  // A difference below this value may be the error of the grid.
   constexpr double from_grid = 1e-7;
   if (const double difference = distribution == nullptr ? 0 : difference_from_grid(part, placed.points);
       difference > from_grid)

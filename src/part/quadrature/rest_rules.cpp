@@ -108,7 +108,7 @@ RestShape::RestShape(const Part& whole, const MassDistribution* mass_distributio
       follows(pliant::follows(whole)),
       dynamic_exponents(has_dynamic_exponent(whole)) {
   if (dynamic_exponents) find_kinks();
-  // The moments of sections are closed forms for equal density.
+  // The moments of sections have closed forms only if the density is the same everywhere.
   by_sections =
       distribution == nullptr && !part.shell() && follows <= Follows::section && part.shape().has_sections();
   points_apart =
@@ -276,8 +276,8 @@ Eigen::VectorXd ring_masses(const RestShape& r, const AngleNode& u, const Quadra
   return masses.cwiseProduct(mass_multiples(r.part, *r.distribution, points));
 }
 
-/// Returns the coordinates (columns) in which displacements are affine along a ring: (C_v^eps, S_v^eps),
-/// where eps is the exponent of the ring, if the shape follows rings; else (x, y).
+/// Returns the coordinates (columns) in which displacements are affine along a ring. For Follows::ring they
+/// are (C_v^eps, S_v^eps) with the exponent eps of the ring; otherwise they are (x, y).
 Eigen::Matrix2Xd ring_coordinates(const RestShape& r, const std::vector<AngleNode>& v,
                                   const RingTangents& nodes) {
   if (r.follows != Follows::ring) return nodes.e.topRows<2>();

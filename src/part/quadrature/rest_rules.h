@@ -51,8 +51,8 @@ struct SliceNode {
 };
 /// Returns nodes along z. A panel with singular ends has 2 n nodes.
 std::vector<SliceNode> slice_nodes(const RestShape& shape, int n);
-/// Appends three points that represent the section; none if the section has no area or no volume at rest.
-/// Throws std::invalid_argument if the rest shape folds over there.
+/// Appends three points that represent the section; none if the section has no area, or if the determinant of
+/// the chain is 0 there (a tip). Throws std::invalid_argument if the rest shape folds over there.
 void add_slice(const RestShape& shape, const SliceNode& node, std::vector<RestPoint>& out);
 
 /// Signs of the coordinates x, y and z of a mirror image.

@@ -230,8 +230,8 @@ inline void add_ring(const RestShape& shape, const RingNode& ring, const std::ve
 template <class Integrands>
 class RingSearch {
  public:
-  /// thinned: whether to thin the nodes along u and w. The nodes along v are thinned if the points of a ring
-  /// move independently. extra: number of levels of refinement beyond the level that suffices.
+  /// thinned: whether to thin the nodes along u and w. search_v() decides whether the nodes along v are
+  /// thinned. extra: number of levels of refinement beyond the level that suffices.
   RingSearch(const RestShape& shape, const Integrands& integrands, bool thinned, int extra)
       : shape_(shape), integrands_(integrands), thinned_(thinned), extra_(extra) {}
 
@@ -258,9 +258,9 @@ class RingSearch {
   static constexpr int kCoarse = 5, kPlaces = 16;
   static constexpr std::size_t kSmallRing = 64;  // nodes of a ring that is computed fast without thinning
 
-  /// Integrands of the moments of rings of a solid at random nodes of u and w. With a rule that is thinned
-  /// for them, the search along u and w computes few points of each ring. The moments of shells contain
-  /// roots, and span spaces of high dimension.
+  /// Integrands of the moments of rings of a solid at random nodes of u and w. A rule along v that is thinned
+  /// for these integrands has few nodes, so that the search along u and w is fast. For shells such a rule is
+  /// not used, because their moments contain roots and span spaces of high dimension.
   struct RingMoments {
     static constexpr int kEach = 6;
     const RingSearch& search;

@@ -90,8 +90,8 @@ StrainPoints with_directions(const Part& part, const ParameterValues<double>& re
 }
 
 /// The integrands of a state: energy, force and stiffness along random directions, and the volume. Each
-/// integrand is divided by its root mean square over the body, so that soft states count as much as stiff
-/// states.
+/// integrand is divided by its root mean square over the body, so that soft and stiff states have equal
+/// weight.
 class StrainIntegrands {
  public:
   static constexpr const char* subject = "strain energy";
@@ -142,11 +142,11 @@ class StrainIntegrands {
     VecMax<double> q, first, second;
   };
 
-  /// Moves a state towards the rest shape until the law is defined in it, if the law has no energy for
-  /// inverted material.
+  /// If the law has no energy for inverted material, moves a state towards the rest shape until det F is at
+  /// least 0.3 at all sample points.
   void confine(int number, VecMax<double>& q) const {
     if (!std::holds_alternative<Damped<NeoHookeanLog>>(law_)) return;
-    constexpr double least = 0.3;  // of the volume of each piece of material
+    constexpr double least = 0.3;  // smallest det F that is accepted
     const int n = static_cast<int>(q.size());
     const auto rest = [&](int k) { return shape_.part.parameters().moving(k).rest_value(); };
     if (static_cast<std::size_t>(number) == reach_.size()) {
@@ -248,7 +248,7 @@ class StrainIntegrands {
   std::vector<RestPoint> sample_;  // over the whole body
   StrainPoints sample_points_;
   mutable std::vector<Densities> units_;  // of each state, in the order in which they are drawn
-  mutable std::vector<double> reach_;     // share of each state that confine() keeps
+  mutable std::vector<double> reach_;     // of each state: factor by which confine() scales q - rest
 };
 
 /// Removes points that the integrals do not need. Each pass handles the points in groups; the passes end when

@@ -221,7 +221,7 @@ JsonValue parse(std::string_view text, const ParseOptions& options) {
   if (is_foreign(text, &foreign)) throw foreign;
   Builder builder(text, options);
   json::sax_parse(text.begin(), text.end(), &builder);
-  builder.require_end();  // the event parser takes a zero byte for the end of the text
+  builder.require_end();  // the event parser ends at a zero byte
   return builder.release_root();
 }
 

@@ -1,5 +1,5 @@
-// Numbers in binary files: copies of bytes in a given order, of types that are known to the compiler or that
-// the file names.
+// Reads numbers of binary files in a given byte order. The type of a number is a template argument, or a
+// NumberType if the file declares the type.
 #pragma once
 
 #include <algorithm>

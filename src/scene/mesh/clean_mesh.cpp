@@ -17,7 +17,8 @@ namespace pliant {
 
 namespace {
 
-/// Slivers are removed with a margin, since the placement of a mesh rounds its vertices.
+/// Smallest height of a triangle as a share of its longest edge. It is twice the limit of ObstacleMesh,
+/// because the placement of a mesh rounds its vertices.
 constexpr double kSliver = 2 * kNoHeight;
 constexpr int kMaxPasses = 50;
 
@@ -118,8 +119,8 @@ class MeshCleaner {
     return !(a.cross(b).norm() > kSliver * longest * longest);
   }
 
-  /// Each pass removes slivers that do not touch each other. Slivers that remain after kMaxPasses are refused
-  /// later.
+  /// Each pass removes slivers that do not touch each other. ObstacleMesh refuses slivers that remain after
+  /// kMaxPasses passes.
   void remove_slivers() {
     for (int pass = 0; pass < kMaxPasses; ++pass) {
       std::vector<std::size_t> slivers;
@@ -163,7 +164,7 @@ class MeshCleaner {
     merge_vertices(merged);
   }
 
-  /// Divides a triangle at vertex r of its edge from q to p.
+  /// Divides triangle t, which has the edge from q to p, into two triangles with the common vertex r.
   void divide(std::size_t t, int q, int p, int r) {
     const Triangle whole = triangles_[t];
     const int s = whole[0] != q && whole[0] != p   ? whole[0]

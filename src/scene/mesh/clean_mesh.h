@@ -9,12 +9,10 @@ namespace pliant {
 
 /// Returns the mesh with each position once (in the order of the file) and without
 ///   - vertices in no triangle, triangles with two equal corners, and second copies of triangles
-///   - slivers: triangles whose height is below kNoHeight of their longest edge. Two vertices at the ends of
-///   a
-///     short edge become one; otherwise the triangle behind the longest edge is divided
-///   - walls between two solids: pairs of triangles with the same corners and opposite orientation, whose
-///   edges
-///     belong to different closed surfaces.
+///   - slivers: triangles whose height is at most 2 kNoHeight of their longest edge. The two vertices of a
+///     short edge become one; otherwise the neighbouring triangle at the longest edge is divided
+///   - walls between two solids: pairs of triangles with the same corners and opposite orientation that
+///     belong to different surfaces.
 /// Adds one note for each kind of flaw to the notes of the reader. Cleaning a clean mesh changes nothing.
 MeshFile clean_mesh(RawMesh raw);
 

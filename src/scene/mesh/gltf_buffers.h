@@ -16,7 +16,8 @@ namespace pliant::gltf {
 
 class Buffers {
  public:
-  /// root: the JSON document. embedded: the binary chunk of a GLB file; may be empty. folder: of the file.
+  /// root: the JSON document. embedded: the binary chunk of a GLB file; may be empty. folder: that of the
+  /// file.
   Buffers(Value root, std::string embedded, std::filesystem::path folder)
       : root_(std::move(root)), embedded_(std::move(embedded)), folder_(std::move(folder)) {}
 
@@ -27,7 +28,8 @@ class Buffers {
   std::vector<std::size_t> integers(const Value& user, std::size_t limit);
 
  private:
-  /// The data of an accessor: its components are `components` numbers of one type, every `stride` bytes.
+  /// The data of an accessor: `count` vectors or integers, one every `stride` bytes. Their components are
+  /// numbers of type `component_type`.
   struct Array {
     const char* data;
     std::size_t count, stride;

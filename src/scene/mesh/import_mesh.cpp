@@ -75,7 +75,8 @@ Corners import_here(const std::string& file) {
   return all;
 }
 
-/// Writes all bytes; ends the process if the reader is gone.
+/// Writes all bytes. Ends this process if the bytes cannot be written, for example after the parent has
+/// ended.
 void send(int to, const void* bytes, std::size_t count) {
   const char* at = static_cast<const char*>(bytes);
   while (count > 0) {
@@ -95,7 +96,8 @@ void send(int to, const std::vector<Number>& numbers) {
   send(to, numbers.data(), numbers.size() * sizeof(Number));
 }
 
-/// The process that imports: sends the vertices and triangles, or a message in place of them.
+/// Runs in the import process. Sends an error message, which is empty if there is no error, and then the
+/// vertices and triangles.
 [[noreturn]] void import_and_send(const std::string& file, int to) {
   const rlimit seconds{kImportSeconds, kImportSeconds}, no_core{0, 0};
   ::setrlimit(RLIMIT_CPU, &seconds);
@@ -148,7 +150,8 @@ bool receive(int from, std::string& bytes) {
   }
 }
 
-/// Takes numbers from the front of bytes. Throws std::invalid_argument if they are not whole.
+/// Returns the numbers that send() has written at position `at` of the bytes, and moves `at` past them.
+/// Throws std::invalid_argument if some of the numbers are missing.
 template <class Number>
 std::vector<Number> take(const std::string& bytes, std::size_t& at) {
   std::uint64_t count = 0;

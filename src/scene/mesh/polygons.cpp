@@ -23,7 +23,8 @@ struct Polygon {
     for (int k = 1; k + 1 < n; ++k) normal += (at(k) - at(0)).cross(at(k + 1) - at(0));
   }
   const Vec3<double>& at(int k) const { return x[static_cast<std::size_t>(corners[k])]; }
-  /// Returns twice the area of a triangle of corners, with a sign: positive if it turns as the polygon.
+  /// Returns twice the area of a triangle of corners times |normal|. The sign is positive if the triangle has
+  /// the orientation of the polygon.
   double turn(int a, int b, int c) const { return (at(b) - at(a)).cross(at(c) - at(b)).dot(normal); }
   bool convex() const {
     for (int k = 0; k < n; ++k)

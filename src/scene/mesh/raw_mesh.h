@@ -10,7 +10,8 @@
 
 namespace pliant {
 
-/// Largest number of triangles of a mesh. One mesh of a glTF file can be at many nodes.
+/// Largest number of triangles of a mesh. The triangles of a glTF mesh are counted once for each of its
+/// nodes.
 inline constexpr std::size_t kMaxTriangles = 20'000'000;
 
 /// A file in memory. name: its path, for messages.

@@ -46,7 +46,10 @@ class TextValues {
   std::size_t remaining() const { return words_.remaining() + 1; }
   [[noreturn]] void fail(const std::string&, const std::string& expected) { words_.fail(expected); }
   /// Returns the number of bytes after the last value, without blanks and line ends.
-  std::size_t left_over() { return words_.next().empty() ? 0 : words_.remaining() + 1; }
+  std::size_t left_over() {
+    const std::size_t word = words_.next().size();
+    return word == 0 ? 0 : word + words_.remaining();
+  }
 
  private:
   Words words_;

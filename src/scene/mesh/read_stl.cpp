@@ -76,7 +76,8 @@ std::uint64_t count_at(const MeshBytes& file, std::size_t byte) {
   return binary_number<std::uint32_t>(file.bytes.data() + byte);
 }
 
-/// Returns the number of additional bytes in the header. Adds a note if there are additional bytes.
+/// Returns the number of additional bytes in the header. Adds a note for additional bytes there or at the
+/// end.
 std::size_t find_shift(const MeshBytes& file, RawMesh& mesh) {
   const std::uint64_t size = file.bytes.size(),
                       needed = kHeader + kCount + kTriangle * count_at(file, kHeader);
@@ -100,7 +101,7 @@ std::size_t find_shift(const MeshBytes& file, RawMesh& mesh) {
 RawMesh read_binary(const MeshBytes& file) {
   if (file.bytes.size() < kHeader + kCount)
     fail_at_byte(file, file.bytes.size(), "the end of the file",
-                 "a text that begins with solid, or a binary STL file with a header of 84 bytes");
+                 "a text that begins with solid, or a binary STL file of at least 84 bytes");
   RawMesh mesh;
   const std::size_t shift = find_shift(file, mesh);
   const std::size_t n = count_at(file, kHeader + shift);

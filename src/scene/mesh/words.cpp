@@ -22,7 +22,8 @@ std::string_view without_plus(std::string_view word) {
   return word;
 }
 
-/// Returns whether a decimal number that is not zero is at least 1. It has any number of digits.
+/// Returns whether the absolute value of a decimal number is at least 1. The number is not zero and may have
+/// any number of digits.
 bool is_large(std::string_view digits) {
   const std::size_t e = std::min(digits.size(), digits.find_first_of("eE"));
   long long exponent = 0;

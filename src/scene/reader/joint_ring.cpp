@@ -18,10 +18,10 @@ namespace {
 
 /// A point with w - 1 up to this number is on the surface; w is the radial coordinate.
 constexpr double kOnSurface = 1e-9;
-/// Smallest radius as a share of the size of a part. The points of smaller rings hold the orientation with
-/// rounding errors only.
+/// Smallest radius as a share of the size of a part. With a smaller ring, rounding errors of its points would
+/// determine the orientation.
 constexpr double kSmallestRadius = 1e-5;
-/// Largest difference of equal polygons, as a share of the radius.
+/// Two polygons are equal if difference_of_polygons() is at most this share of the radius.
 constexpr double kEqual = 1e-6;
 
 /// Returns the point at an offset (m) from a point, in the frame of its part at rest or in the world; nothing
@@ -55,8 +55,8 @@ bool is_rigid(const Part* part) {
   return part == nullptr || (part->n_s() == 0 && part->local() == nullptr);
 }
 
-/// Returns the largest difference of the distances of a point from the first three points on the side `from`
-/// and on the side `to`, m.
+/// Compares the distances of each point from the first three points of its polygon, on the side `from` and on
+/// the side `to`. Returns the largest difference, m.
 double difference_of_polygons(const std::vector<JointSetting>& joints) {
   std::vector<Vec3<double>> from, to;
   for (const JointSetting& joint : joints) {

@@ -305,7 +305,8 @@ void PartReader::report_local_fault(const LocalFault& e) {
   faults_.place(at, without_name(e));
 }
 
-/// Returns the message of an error without the name of the part, which the pointer shows.
+/// Returns the message of an error without the name of the part. The JSON pointer of the fault shows the
+/// part.
 std::string PartReader::without_name(const std::invalid_argument& e) const {
   std::string message = e.what();
   const std::string who = "part '" + part_->name() + "': ";

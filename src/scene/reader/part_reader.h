@@ -16,7 +16,7 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: the materials of the scene by name. body: the body that prepares the part, and whose joint
+  /// materials: the materials of the scene by name. body: the MultiBody that prepares the part. Its joint
   /// solver makes the sparse factorisation for modes of a mesh. end: end of the run, s.
   PartReader(const Reader& part, const std::map<std::string, Reader>& materials, const MultiBody& body,
              double end, SceneFaults& faults)

@@ -26,8 +26,8 @@ void warn_about_sizes(const Scene& scene, const Reader& root, SceneFaults& fault
                   " times that of part \"" + (*smallest)->name() + "\"; lengths are in metres");
 }
 
-/// Returns whether a ball is outside the cone around the picture of a camera with given eye and target. Then
-/// it is not in the picture.
+/// Returns whether a ball is outside the cone that encloses the view of the camera. Such a ball is not in the
+/// picture. The scene must give eye and target of the camera.
 bool is_outside(const Scene& scene, const Vec3<double>& centre, double radius) {
   const Vec3<double> forward = (*scene.camera.target - *scene.camera.eye).normalized(),
                      to = centre - *scene.camera.eye;

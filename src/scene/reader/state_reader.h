@@ -18,7 +18,7 @@ namespace pliant {
 
 class StateReader {
  public:
-  /// scene: its parts, joints, springs, tracks and sensors are the names that formulas may read; it must
+  /// scene: formulas may read its parts, joints, springs, tracks and sensors by their names; the scene must
   /// outlive the reader. Coordinates of joints that a formula reads are added to the MultiBody.
   /// at_points: the quantities at a point that the formulas of a distributed force may read.
   StateReader(Scene& scene, SceneFaults& faults, std::vector<std::string> at_points = {})

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Returns the record of a drive on a coordinate of a joint. name: of the record. unit: of the coordinate,
-/// "m" or "rad"; force: of the force along it.
+/// Returns the record of a drive on a coordinate of a joint. name: name of the record. unit: unit of the
+/// coordinate, "m" or "rad". force: unit of the force along the coordinate.
 schema::Record drive_record(std::string name, const std::string& unit, const std::string& force);
 /// Returns the record of a drive on a parameter. Its units are those of lengths, angles and numbers.
 schema::Record parameter_drive_record();

@@ -13,8 +13,8 @@ class ForceLines {
   void toggle();
   /// Adds the settings to the panel of the window. Returns whether the user has changed one.
   bool add_to_panel();
-  /// Adds a line for each force of the kinds that are shown, with a dot at its point. The largest force so
-  /// far is a quarter of the scene long. size: of the scene, m.
+  /// Adds a line for each force of the kinds that are shown, with a dot at its point. The line of the
+  /// largest force so far has a quarter of the size of the scene. size: of the scene, m.
   void add(const ForceArrows& arrows, double size, Picture& picture);
 
  private:

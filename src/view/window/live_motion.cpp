@@ -291,7 +291,7 @@ void LiveMotion::add_stiffnesses(const std::string& part) {
     if (!add_slider(spring.name + " (N/m)", value, 0.1f * first, static_cast<float>(stiffness.most), "%.4g",
                     ImGuiSliderFlags_Logarithmic))
       continue;
-    stiffness.next = value;
+    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
     run_.post(
         [i, wanted = stiffness.next](LiveSimulation& simulation) { simulation.set_stiffness(i, wanted); });
   }

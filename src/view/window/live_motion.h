@@ -1,4 +1,4 @@
-// The running simulation of a window.
+// The running simulation that a window shows.
 #pragma once
 
 #include <filesystem>
@@ -45,7 +45,7 @@ class LiveMotion final : public Motion {
 
   Scene* scene_;
   ViewOptions options_;
-  LiveRun run_;  // made before model_, because it may still change the parts
+  LiveRun run_;  // made before model_, because its constructor changes the parts
   std::vector<RestValue> rest_values_;
   std::vector<SpringStiffness> stiffnesses_;
   std::vector<ParameterStiffness> parameter_stiffnesses_;

@@ -22,7 +22,8 @@ class Motion {
   virtual StatePicture& shown() = 0;
   virtual double time() const = 0;  ///< of the state that is shown, s
 
-  /// Wall time by which a simulation is late, s; 0 of a recording. The window then draws fewer pictures.
+  /// Wall time by which a simulation is late, s; 0 for a recording. For a late simulation the window draws
+  /// fewer pictures.
   virtual double delay() const = 0;
   virtual bool plays() const = 0;
   virtual void play(bool on) = 0;

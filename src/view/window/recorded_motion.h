@@ -1,4 +1,4 @@
-// The recording of a window.
+// The recording that a window shows.
 #pragma once
 
 #include <cstdint>

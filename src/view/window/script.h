@@ -16,8 +16,9 @@ class Script {
   /// Throws std::invalid_argument if the file cannot be read.
   explicit Script(const std::filesystem::path& file);
 
-  /// Performs lines until one that waits for pictures. To be called before each picture. Returns false at the
-  /// end. out: for the lines that report. Throws std::invalid_argument that names a line that is not known.
+  /// Performs lines up to the next line that waits for pictures. The window calls this function before each
+  /// picture. Returns false at the end of the file. out: for the lines that report. Throws
+  /// std::invalid_argument that names a line that is not known.
   bool perform(Viewer& viewer, std::ostream& out);
 
  private:
@@ -28,8 +29,8 @@ class Script {
   std::filesystem::path file_;
   std::vector<std::string> lines_;
   std::size_t next_ = 0;
-  int pictures_ = 0;   // that are still to be drawn
-  double until_ = -1;  // simulated time that is waited for, s
+  int pictures_ = 0;   // number of pictures to be drawn before the next line
+  double until_ = -1;  // simulated time before which no line is performed, s
 };
 
 }  // namespace pliant

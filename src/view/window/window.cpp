@@ -110,7 +110,7 @@ void connect(GLFWwindow* window, Viewer& viewer) {
   viewer.resized(wide, high);
 }
 
-/// Dear ImGui with its renderer. Keeps the callbacks of the window.
+/// Dear ImGui with its renderer. Its callbacks also call those that connect() has set.
 class Panel {
  public:
   explicit Panel(GLFWwindow* window) {

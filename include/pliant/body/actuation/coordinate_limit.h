@@ -1,11 +1,11 @@
-// Limits of the coordinates of joints: one-sided rows C >= 0. A limit that stops a motion returns the share
-// `restitution` of the rate.
+// Limits of the coordinates of joints: one-sided rows C >= 0. When a limit stops a motion, the share
+// `restitution` of the rate is reversed.
 //   hinge   C = size (half - sign (x - middle)),   x: the angle
 //   slider  C = half - sign (x - middle),          x: the position
 //   ball    C = size (max^2 - theta^2) / (2 max),  theta: the angle between the axes a_1 and b_1 (swing)
 //   ball    C = size (half - sign (x - middle)),   x: the twist (ball_rotation.h)
-// The range of x is [middle - half, middle + half]; sign is 1 for its upper and -1 for its lower end. x -
-// middle is in (-pi, pi], so a range of angles has at most one turn.
+// The range of x is [middle - half, middle + half]; sign is 1 for its upper and -1 for its lower end. For
+// angles, x - middle is in (-pi, pi], so the range is at most one turn.
 #pragma once
 
 #include <cmath>

@@ -33,8 +33,8 @@ struct Drive {
     return !(is_zero(stiffness) && is_zero(damping) && is_zero(force));
   }
 
-  /// Whether the drive is a spring and damper with constants. Its energy k (x - target)^2 / 2 is then in the
-  /// ledger; otherwise the ledger has the work of F as actuation.
+  /// Whether the drive is a spring and damper with constants. If it also acts at all times, its energy
+  /// k (x - target)^2 / 2 is in the ledger. Otherwise the ledger has the work of F as actuation.
   bool is_passive() const {
     return target.is_constant() && !target_rate && stiffness.is_constant() && damping.is_constant() &&
            force.is_constant() && force.constant() == 0 &&

@@ -1,8 +1,7 @@
 // Signals by their names, and formulas of the state from their text. The names of quantities are
 //   part    x, y, z, vx, vy, vz, omega.x, omega.y, omega.z, PARAMETER, PARAMETER_dot (dynamic parameters)
-//   joint   hinge: angle, rate; slider: position, rate; ball: twist, swing_y, swing_z, twist_rate,
-//   swing_y_rate,
-//           swing_z_rate; rod and string: length, rate
+//   joint   hinge: angle, rate; slider: position, rate; rod and string: length, rate;
+//           ball: twist, swing_y, swing_z, twist_rate, swing_y_rate, swing_z_rate
 //   spring  length, rate
 //   point   x, y, z, vx, vy, vz
 // A sensor and an input have no quantity: their name is the signal.
@@ -22,7 +21,7 @@ class MultiBody;
 /// Material points by their names.
 using NamedPoints = std::map<std::string, Point>;
 
-/// Returns the signal of a quantity of an owner, or nothing if nothing has the name of the owner. Adds the
+/// Returns the signal of a quantity of an owner, or nothing if no object has the name `owner`. Adds the
 /// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner has no
 /// such quantity, or if two objects of this name, for example a part and a spring, both have the quantity.
 std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, const std::string& quantity,

@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Entry of d in a row, relative to the diagonal entry of W_c in this row.
+/// Entry of d in a row, relative to diagonal_of_ends() of this row.
 inline constexpr double kRegularisation = 1e-9;
 /// A row of unit length counts as dependent on the rows before it if its distance from their span is below
 /// this number.

@@ -277,10 +277,10 @@ double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, 
 namespace detail {
 
 /// Rows that depend on each other look independent while their joints are open by a gap e: their relative
-/// pivots are then of the order (e / r)^2, with r the distance of the points of the joints. Returns the
-/// factor on the scale of a pivot with which pivots up to (kOpenPivot e / length)^2 vanish in a closed joint,
-/// at least 1. Joints that have just become closed have gaps up to kJustClosed lengths; larger gaps do not
-/// count.
+/// pivots are then of the order (e / r)^2, where r is the distance from the point of one joint to that of the
+/// other. Returns a factor of at least 1 for the scales of the pivots of a closed joint (solve/pivots.h).
+/// With this factor, pivots up to (kOpenPivot e / length)^2 vanish. Joints that have just become closed have
+/// gaps e up to kJustClosed lengths; for larger gaps the factor is 1.
 template <class S>
 double scale_of_open_rows(const JointModel& joint, const ConstraintWorkspace<S>& work, int j) {
   constexpr double kOpenPivot = 10, kJustClosed = 2e-3;

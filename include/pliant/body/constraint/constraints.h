@@ -108,8 +108,8 @@ struct ConstraintWorkspace {
 using EvaluatePart = std::function<void(int)>;
 
 /// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls evaluate(i), if given, for
-/// the parts of the island in turn, each part before the first joint on it is evaluated. Part and joint are
-/// then in the cache together.
+/// the parts of the island in turn: each part is evaluated before the first joint on this part. Part and
+/// joint are then in the cache together.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,

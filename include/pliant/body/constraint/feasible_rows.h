@@ -1,6 +1,7 @@
-// Requests of closing joints that depend on each other. Several points that hold an orientation have more
-// rows than there are motions: W_c has vectors n with W_c n = 0, and accelerations exist only for rows b with
-// n . b = 0. While such joints are open, Baumgarte's terms violate this condition.
+// The rows b that closing joints request, W_c lambda = -b, if these joints depend on each other. Several
+// points that hold an orientation have more rows than there are motions: W_c has vectors n with W_c n = 0,
+// and accelerations exist only for rows b with n . b = 0. While such joints are open, Baumgarte's terms
+// violate this condition.
 #pragma once
 
 #include <utility>
@@ -16,8 +17,8 @@ namespace pliant::detail {
 template <class S>
 class DependentRows {
  public:
-  /// Computes the vectors. group: of all joints that act, after an evaluation and factorisation. There are
-  /// none if the augmented matrix is factored: its lower right block makes all rows feasible.
+  /// Computes the vectors n. group: of all joints that act, after an evaluation and factorisation. If the
+  /// augmented matrix is factored, there are no vectors: its lower right block makes all rows feasible.
   DependentRows(const Model& model, const Island& island, const Workspace<S>& work,
                 const Group<S, Eigen::Dynamic>& group) {
     const ConstraintWorkspace<S>& joints = work.joints;

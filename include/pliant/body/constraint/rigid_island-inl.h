@@ -89,7 +89,8 @@ PLIANT_INLINE bool RigidIsland::applies_to(const Model& model, const Island& isl
 
 PLIANT_INLINE RigidIsland::RigidIsland(const Model& model, const Island& island)
     : island_(static_cast<int>(&island - model.islands().data())) {
-  // Parts are sorted by their number of joints, so that the four parts of a pack have about as many arms.
+  // Parts are sorted by their number of joints, so that the four parts of a pack have similar numbers of
+  // arms.
   std::vector<std::vector<int>> joints_of(island.parts.size());
   for (const int j : island.joints)
     for (const JointSide& side : model.joints()[at(j)].sides) joints_of[at(side.place)].push_back(j);

@@ -113,9 +113,9 @@ class IslandForces {
     correct(group, which, x, lambda, [](VecX<S>&) {});
   }
 
-  /// Adds the forces of the closing joints. Of rows that depend on each other and request different
-  /// accelerations, each gets its share: the sum of the squared violations is least. The forces are scaled
-  /// down if they accelerate a part by more than kMaxClosingRatio times the largest request.
+  /// Adds the forces of the closing joints. If rows depend on each other and request different
+  /// accelerations, the sum of their squared violations is minimised. The forces are scaled down if they
+  /// accelerate a part by more than kMaxClosingRatio times the largest request.
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;

@@ -120,8 +120,8 @@ void evaluate_parts(const Evaluation<S>& e) {
   for (RigidWorkspace& rigid : e.work.rigid) rigid.prepared = rigid.prepared || rigid.used;
 }
 
-/// Stage 3 for loads: f_q = L^T f of springs, forces, torques and drives; then stage 5 of the parts on which
-/// loads act or whose state they read.
+/// Stage 3 for loads: f_q = L^T f of all loads (stages/loads.h); then stage 5 of the parts on which loads act
+/// or whose state they read.
 template <class S>
 void evaluate_loads(const Evaluation<S>& e) {
   const std::vector<int>& loaded = e.model().loaded_parts();
@@ -269,8 +269,8 @@ void collect_part(const Evaluation<S>& e, int i) {
   v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
   v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
   if constexpr (std::is_same_v<S, double>)
-    // Joints and limits accelerate the local coordinates too. Without them A_inverse is not computed, and a_r
-    // differs from a_free only if it is not a number.
+    // Joints and limits accelerate the local coordinates too. Without joints and limits, A_inverse is not
+    // computed, and a_r differs from a_free only if an entry is not a number.
     if (m.local != nullptr && w.local->A_inverse.cols() == w.a_r.size() && w.a_r != w.local->a_free)
       m.local->push_all(m.joint_points, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
                         v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));

@@ -25,8 +25,8 @@ Vec3<S> force_of(const Evaluation<S>& e, const ForceModel& f, const PortMotion<S
   return force.frame == Frame::body ? Vec3<S>(e.part_work(f.at.part).R * value) : value;
 }
 
-/// Returns the elastic and the damping force of a spring on its end a, N, world; zero for a spring with a
-/// rest length and no length, which has no direction.
+/// The elastic and the damping force of a spring on its end a, N, world. Both are zero if the ends coincide
+/// and the rest length is not the constant 0: the spring then has no direction.
 template <class S>
 struct SpringForce {
   Vec3<S> elastic, damping;
@@ -56,8 +56,8 @@ Vec3<S> torque_of(const Evaluation<S>& e, const TorqueModel& m) {
   return vector_of(e, m.torque->torque, m.components);
 }
 
-/// Returns the two terms of the force of a drive along its coordinate x, N or N m: that of its stiffness and
-/// `force`, and that of its damping. If a bound limits their sum, it scales both.
+/// The two terms of the force of a drive along its coordinate x, N or N m: the term of the stiffness and
+/// `force`, and the term of the damping. If Drive::max_force limits their sum, both terms are scaled.
 template <class S>
 struct DriveForce {
   S elastic, damping;
@@ -157,7 +157,7 @@ class LoadStage {
     power(Work::actuation) += force * x_dot;
   }
   /// Adds the forces C_x^T f of a force f along a coordinate to the ports of its points. The prescribed
-  /// motion of a point does work against its force.
+  /// motion of a point does work against the force on this point.
   void push_coordinate(const SignalModel& on, const S& force) {
     const JointRows<S>& rows = coordinate_rows(e_, on.place);
     const std::vector<PortRef>& at = model_.coordinates()[static_cast<std::size_t>(on.place)].at;
@@ -185,8 +185,8 @@ class LoadStage {
   Vec<S, kWorks>& power_;
 };
 
-/// Return the power of the damper of a spring, and of a drive whose energy is in the ledger, W: their share
-/// in Work::spring_damping. The positions of the parts at it must be in the workspace.
+/// Returns the power of the damper of a spring, or of a drive whose energy is in the ledger, W. This power is
+/// part of Work::spring_damping. The positions of the parts at the spring or drive must be in the workspace.
 template <class S>
 S damper_power(const Evaluation<S>& e, const SpringModel& s) {
   if (!s.spring->acts_at(e.t)) return S(0.0);
@@ -199,7 +199,7 @@ S damper_power(const Evaluation<S>& e, const DriveModel& m) {
   return force_of(e, m, x, x_dot).damping * x_dot;
 }
 
-/// Stage 3, loads: adds the forces of springs, points and torques to the parts they act on.
+/// Stage 3, loads: adds the forces and torques of all loads to the parts on which they act.
 template <class S>
 void apply_loads(const Evaluation<S>& e) {
   LoadStage<S>(e).add_all();

@@ -328,8 +328,8 @@ inline void accelerate_local(const PartModel& m, PartWorkspace<double>& w, Eigen
   w.local->a_free = w.a_r;
 }
 
-/// Calls act(row) for each parameter of part i of a group that is at a limit, has a rate of exactly 0 and has
-/// inertia. at_limit: the entries of the part in State::at_limit.
+/// Calls act(row) for each parameter of a part that is at a limit, has a rate of exactly 0 and has inertia.
+/// i: number of the part in its group. at_limit: the entries of the part in State::at_limit.
 template <class Act>
 void for_each_limit_at_rest(const PartModel& m, const std::int8_t* at_limit, const PartWorkspace<double>& w,
                             int i, Act&& act) {

@@ -52,11 +52,13 @@ const JointRows<S>& coordinate_rows(const Evaluation<S>& e, int place) {
 template <class S>
 S value_of(const Evaluation<S>& e, const FunctionModel& f);
 
-/// Returns whether a drive acts at time t (s): a drive of a joint acts while the joint does.
+/// Returns whether a drive acts at time t (s). A drive on a joint acts while the joint acts; a drive on a
+/// parameter always acts.
 inline bool acts_at(const Model& model, const DriveModel& m, double t) {
   return m.on.place < 0 || model.coordinates()[static_cast<std::size_t>(m.on.place)].coordinate->acts_at(t);
 }
-/// Returns whether a drive acts in an evaluation. The mode of its joint decides, which is constant in a step.
+/// Returns whether a drive acts in an evaluation. The mode of its joint decides; this mode is constant in a
+/// step.
 template <class S>
 bool acts(const Evaluation<S>& e, const DriveModel& m) {
   if (m.on.place < 0) return true;
@@ -79,7 +81,8 @@ S coordinate_difference(const Drive& drive, const S& difference) {
   return difference - S(2 * kPi * std::round(plain(difference) / (2 * kPi)));
 }
 
-/// Returns whether the ledger has the energy of a drive: a spring and damper that acts at all times.
+/// Returns whether the ledger has the energy of a drive. The drive must be a spring and damper with constants
+/// that acts at all times.
 inline bool stores_energy(const Model& model, const DriveModel& m) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return m.drive->is_passive() && acts_at(model, m, -infinity) &&

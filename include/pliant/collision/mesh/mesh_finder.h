@@ -64,8 +64,8 @@ class MeshFinder {
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
   double local_travel(const State& state, double t, const BoundingBall& ball) const;
-  /// Whether one of two parts contains the centre of the other, or an overlap is deeper than a share of their
-  /// thickness and than their motion in the last step can explain. touches: the overlaps of their meshes. The
+  /// Whether one of two parts contains the centre of the other, or an overlap exceeds both a share of their
+  /// thickness and a multiple of their motion in the last step. touches: the overlaps of their meshes. The
   /// function has seven parameters because the caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;

@@ -36,8 +36,8 @@ struct MeshTouch {
 /// Appends the overlaps of two meshes. Their order is determined by the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
 /// Appends the overlaps of a mesh a with an obstacle b. If a vertex of the mesh is behind the obstacle,
-/// MeshTouch::b is not set. Overlaps deeper than `deepest` (m) are ignored, because such a vertex may be on
-/// the far side of the mesh. A vertex of the mesh is not behind a triangle of the obstacle if the outward
+/// MeshTouch::b is not set. Overlaps deeper than `deepest` (m) are ignored, because a vertex that deep may be
+/// on the far side of the mesh. A vertex of the mesh is not behind a triangle of the obstacle if the outward
 /// direction of the mesh at the vertex agrees with the normal of the triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 

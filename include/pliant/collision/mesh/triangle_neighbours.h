@@ -1,7 +1,7 @@
 // The triangles on both sides of each edge of a mesh whose solids may touch, and the separation of these
 // solids. Where solids touch along an edge, the edge has two or more pairs of triangles. The two triangles of
-// a pair bound one solid: the next triangle in the direction from the first triangle into its solid is the
-// second one.
+// a pair bound one solid: a turn about the edge, from the first triangle into its solid, reaches the second
+// triangle before any other one.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace pliant {
 
-/// A triangle whose height is below this share of its longest edge has no area; vertices of files are often
-/// in single precision.
+/// A triangle is treated as one without area if its height is at most this share of its longest edge.
+/// Vertices in files are often in single precision.
 inline constexpr double kNoHeight = 1e-7;
 
 struct TriangleNeighbours {
-  /// There is no triangle on the other side; or the triangles of the edge do not form pairs.
+  /// kBorder: the edge has no other triangle. kConflict: the triangles of the edge do not form pairs.
   static constexpr int kBorder = -1, kConflict = -2;
 
   /// For each triangle the triangles behind its edges between corners 0 and 1, 1 and 2, 2 and 0.

@@ -14,8 +14,8 @@ namespace pliant {
 /// Durable::no, writing is faster, and the file survives only a crash of the process.
 enum class Durable { no, yes };
 
-/// Waits until the names of the files in a folder are on the disk: after a power cut, a file that was
-/// replaced before may otherwise be the old one. Throws std::system_error.
+/// Waits until the names of the files in a folder are on the disk. Without this call, a replaced file may
+/// again be the old one after a power cut. Throws std::system_error.
 void sync_folder(const std::filesystem::path& folder);
 
 /// A file that is written piece by piece. All members throw std::system_error with path and reason (for a

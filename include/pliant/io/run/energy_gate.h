@@ -21,11 +21,12 @@ inline constexpr double kLargestEnergyShare = 0.5;
 /// since the state `before`. before: the last recorded state. monitor: has the ledger of the present state.
 void require_energy_balance(const Simulation& simulation, const EnergyMonitor& monitor, const State& before);
 
-/// Returns whether a simulation has steps of fixed length and a method of order 1. Its errors are large in
-/// most runs, and are reported in all.
+/// Returns whether a simulation has steps of fixed length and a method of order 1. The errors of such a
+/// method are large in most runs, so every run reports them.
 bool is_of_first_order(const Simulation& simulation);
 /// Returns a note about the largest error of the balance of a run, a warning above kReportedEnergyShare. The
-/// text is empty if nothing moved and, below kReportedEnergyShare, for methods of higher order.
+/// text is empty if the error is zero, or if it is at most kReportedEnergyShare and is_of_first_order() is
+/// false.
 std::string energy_note(const Simulation& simulation, const EnergyMonitor& monitor);
 /// Returns whether a note is one of energy_note().
 bool is_energy_note(const std::string& note);

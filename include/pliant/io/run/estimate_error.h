@@ -1,6 +1,6 @@
 // The error estimate of a run. The run is repeated with a tenth of its tolerance (at least kMinTolerance) and
-// half the longest contact step, or with half its fixed step. The two runs are compared at every recorded
-// time.
+// half the longest contact step (contact/longest_contact_step.h), or with half its fixed step. The two runs
+// are compared at every recorded time.
 #pragma once
 
 #include <string>

@@ -28,8 +28,8 @@ std::string solver_note(const Model& model);
 
 /// Widest gaps of the closed and of the open joints at the state of a simulation, m; 0 if there is no such
 /// joint. Joints that are off and slack strings are in neither group. A joint is closed if its mode is
-/// JointMode::closed. Without projection, a joint whose gap is at most kClosedGap times the size of its
-/// smaller part is closed too.
+/// JointMode::closed. Without projection, a joint whose gap is at most kClosedGap (project/project.h) times
+/// the size of its smaller part is closed too.
 struct Gaps {
   double closed = 0, open = 0;
 };

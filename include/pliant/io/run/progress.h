@@ -14,8 +14,8 @@ class Interrupted : public std::runtime_error {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// Called when a stage begins. total: amount of work of the stage, in `unit`: "s" (simulated time) or
-  /// "frames".
+  /// Called when a stage begins. total: amount of work of the stage, in `unit`: "s" (simulated time),
+  /// "frames" or "states".
   virtual void begin(const std::string& /*stage*/, double /*total*/, const std::string& /*unit*/) {}
   /// Called with the amount of work done since begin(). It is called often and must be cheap.
   virtual void advance(double /*done*/) {}

@@ -124,7 +124,7 @@ class Run {
   void set_final_values();
   void write_record();
   void fail(const std::string& message) noexcept;
-  /// Shows a note always; run.json has it once.
+  /// Shows a note to the user, and adds it to run.json unless run.json has it.
   void note(const std::string& text);
   /// Does nothing if run.json has the note; otherwise as note().
   void note_once(const std::string& text);

@@ -33,8 +33,8 @@ inline constexpr const char* kMeshFolder = "meshes";
 inline constexpr const char* kFrameFolder = "frames";
 inline constexpr const char* kMaterialFile = "parts.mtl";  ///< colours of meshes; in kMeshFolder
 
-// The folder of a new run inside the folder of the run, see run_folder.h: kNewRun with the ending of an
-// unfinished file while its files are written, then kWholeNewRun, then kMovingNewRun.
+// Names of the folder of a new run inside the folder of the run, see run_folder.h. While its files are
+// written, the name is kNewRun with the ending of an unfinished file; then kWholeNewRun; then kMovingNewRun.
 inline constexpr const char* kNewRun = "new_run";
 inline constexpr const char* kNewRunFile = "new_run.json";  ///< options of a run that has not begun
 inline constexpr const char* kWholeNewRun = "new_run.whole";

@@ -30,8 +30,8 @@ enum class Existing {
 /// these files are whole, this inner folder is renamed to new_run.whole: from now on the folder contains the
 /// new run. Then the files of the old run are removed, new_run.whole is renamed to new_run.moving, its files
 /// are moved to the folder of the run, and it is removed. If the process is killed in between, the next one
-/// that locks the folder completes these steps. If it is killed before the first of them, an old run is as it
-/// was, and the next process removes the unfinished inner folder.
+/// that locks the folder completes these steps. If it is killed before new_run.whole exists, an old run is
+/// unchanged, and the next process removes the unfinished inner folder.
 class RunFolder {
  public:
   /// Writes the options of a new run to a file.
@@ -78,8 +78,8 @@ class RunFolder {
 
 /// Returns the path of run.json of the run in a folder, also if the process was killed while the files of
 /// this run were moved to the folder. If no run has begun in the folder, returns the path of the options with
-/// which one was to begin, or an empty path. If the folder does not exist, returns a path that does not exist
-/// either. Does not lock the folder.
+/// which a run was to begin, or an empty path. If the folder does not exist, returns a path that does not
+/// exist either. Does not lock the folder.
 std::filesystem::path find_run_file(const std::filesystem::path& folder);
 
 /// Creates a folder inside the folder of a run. Throws OutputRefused if a file or a symbolic link has its

@@ -179,8 +179,8 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh) {
     set_coupling(mesh, t, angles.data(), phi.data());
 }
 
-/// Computes C of triangle t. Lanes of the last batch without a triangle receive C of the last triangle. The
-/// curvature at rest is
+/// Computes C of triangle t. In lanes of the last batch without a triangle, C has no effect, because Q is 0
+/// there. The curvature at rest is
 ///   b = 1/A sum_k alpha_k |e_k| n_k n_k^T,
 /// and a strain eps of the triangle changes the curvature by
 ///   kappa = 1/A sum_k alpha_k (n_k . eps n_k) |e_k| n_k n_k^T - (b eps + eps b)/2,

@@ -1,7 +1,7 @@
 // Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
-// 2006). Each edge has a normal at its middle, which can rotate about the edge. The angle phi (rad) from the
-// mean of the normals of both triangles to this normal is an own coordinate of the energy (nodal_energy.h).
-// For FoldingHinges the own coordinate is y = phi + g(dtheta), so that a fold can pass half a turn
+// 2006). Each edge has a normal at its middle, which can rotate about the edge. phi (rad) is the angle from
+// the mean of the normals of both triangles to this normal. With LinearHinges the own coordinate of an edge
+// (nodal_energy.h) is phi. With FoldingHinges it is y = phi + g(dtheta), so that a fold can pass half a turn
 // (fold_turn.h); g = 0 for folds of up to a right angle.
 // Relative to the two triangles the normal has rotated since rest by
 //   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),

@@ -1,5 +1,5 @@
-// The term g(dtheta) by which the own coordinate of a folding hinge exceeds phi (bending.h): phi = y - g. The
-// angle dtheta between -pi and pi jumps by 2 pi where a fold passes half a turn. The rotations of the
+// The term g(dtheta) by which the own coordinate y of a folding hinge exceeds phi (bending.h): phi = y - g.
+// The angle dtheta between -pi and pi jumps by 2 pi where a fold passes half a turn. The rotations of the
 // mid-edge normal relative to its triangles, dtheta/2 + phi and dtheta/2 - phi, must not jump there, except
 // by 2 pi. Therefore phi jumps by pi, and g jumps by -pi, so that y is continuous:
 //   g = 0 for |dtheta| <= pi/2,  else g = sgn(dtheta) pi S(t),  t = (|dtheta| - pi/2)/pi,
@@ -30,8 +30,8 @@ inline FoldTurn<double> fold_turn(double dtheta) {
           sign * 60 * t * (1 - t) * (1 - 2 * t) / kPi};
 }
 
-/// Adds whole turns to dtheta, and the same number of half turns to phi, such that |phi| <= pi/2. The
-/// rotations of the mid-edge normal change by whole turns only.
+/// Adds n whole turns to dtheta and subtracts n half turns from phi, with the n that gives |phi| <= pi/2. The
+/// rotations of the mid-edge normal, dtheta/2 + phi and dtheta/2 - phi, change by whole turns only.
 inline void remove_turns(double& dtheta, double& phi) {
   if (std::abs(phi) <= kPi / 2) return;
   const double turns = std::round(phi / kPi);

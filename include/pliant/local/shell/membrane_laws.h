@@ -19,9 +19,9 @@
 
 namespace pliant {
 
-/// Members of a law: its name, and `Triangles`, the constants of four triangles with functions of W. set()
-/// computes the constants of one triangle with rest edges e. energy() returns W. tension() returns tau =
-/// dW/dq, N/m; linear_tension() returns the linearisation of tau at rest. T is Pack or a dual number.
+/// Members of a law: its name, and `Triangles`, the constants of four triangles and the functions below.
+/// set() computes the constants of one triangle with rest edges e. energy() returns W. tension() returns tau
+/// = dW/dq, N/m; linear_tension() returns the linearisation of tau at rest. T is Pack or a dual number.
 struct StVenantKirchhoffSheet {
   static constexpr const char* name = "st_venant_kirchhoff";
 

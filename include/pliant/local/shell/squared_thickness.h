@@ -2,9 +2,9 @@
 // squared stretch of its area. The energy V(D) has V' = -s/D and V(1) = 0 (membrane_laws.h).
 //   Blatz & Ko      s = D^-k,  V = (D^-k - 1)/k,  k = nu/(1 - nu);  for k -> 0  V = -log D
 //   with ln J       nu ln(D s) + (1 - 2 nu)(s - 1) = 0,  V = (s - 1) - (s + 1) ln J,  ln J = ln(D s)/2
-// The equation for the second s is the derivative by s of the energy of the solid, mu/2 (tr C + s - 3) - mu
-// ln J + lambda/2 (ln J)^2, times 2 nu/mu. It has one solution for 0 <= nu <= 1/2. For small strains both
-// laws have s = 1 - k (D - 1).
+// The equation of the law with ln J sets to zero the derivative by s of the energy of the solid,
+// mu/2 (tr C + s - 3) - mu ln J + lambda/2 (ln J)^2, times 2 s (1 - 2 nu)/mu. The equation has one solution
+// for 0 <= nu <= 1/2. For small strains both laws have s = 1 - k (D - 1).
 #pragma once
 
 #include <sstream>

@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// Four consecutive nodes, or fewer at the end of the column. full: whether all four nodes exist; the
-/// compiler then keeps sums over nodes in registers.
+/// Four consecutive nodes, or fewer at the end of the column. full: whether all four nodes exist; if full is
+/// true, the compiler keeps sums over nodes in registers.
 template <bool full = false>
 class FourNodes {
  public:

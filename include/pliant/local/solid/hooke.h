@@ -1,9 +1,9 @@
 // Green's strain, Hooke's law of an isotropic material and Kelvin-Voigt damping, from F = dx/dX:
 //   G = (F^T F - I)/2,   Gdot = (F^T Fdot + Fdot^T F)/2,   S(G) = lambda tr(G) I + 2 mu G
 //   P_v = F S(Gdot)   viscous stress for beta = 1 s
-// At rest, F = I, every isotropic law with these constants has dP = S(eps) for a small strain eps. There P_v
-// is the damping by the stiffness of the law. Rigid motion has Gdot = 0. The dissipated power
-// P_v : Fdot = S(Gdot) : Gdot is never negative.
+// At rest, F = I, every isotropic law with these constants has dP = S(eps) for a small strain eps. At rest
+// the force by P_v is therefore -K x_dot with the stiffness K of the law. Rigid motion has Gdot = 0. The
+// dissipated power P_v : Fdot = S(Gdot) : Gdot is never negative.
 //
 // Functions that contain I have a parameter Dim. Dim = 3 is for solids. Dim = 2 is for surfaces: F has two
 // non-zero columns, and I has two ones on its diagonal.

@@ -1,5 +1,5 @@
 // Neo-Hookean material of Smith, De Goes & Kim (2018) without their logarithmic term. Without this term, an
-// element that has collapsed to a point is in equilibrium. With F = dx/dX, J = det F and the cofactors
+// element that has collapsed to a point is in stable equilibrium. With F = dx/dX, J = det F and the cofactors
 // C = dJ/dF of F,
 //   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
 //   P = mu F + ((lambda + mu)(J - 1) - mu) C.

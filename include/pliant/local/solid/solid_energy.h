@@ -59,7 +59,7 @@ class SolidEnergy final : public NodalEnergy {
     Mat3<Pack> inverse;  ///< (dX/dxi)^-1, 1/m
     Pack weight;  ///< weight of the quadrature rule times det dX/dxi, m^3; 0 in lanes without an element
   };
-  /// dP/dG and dG/dx_a: results of stress_derivative() and gradient_matrix().
+  /// dP/dG and dG/dx_a: results of stress_matrix() and gradient_matrix().
   using StressDerivative = Eigen::Matrix<double, 9, 9>;
   using GradientMatrix = Eigen::Matrix<double, 9, 3 * N>;
   /// Subtracts from f the nodal sums of weight * P (dX/dxi)^-T dN_a/dxi over all elements, with P =

@@ -32,7 +32,7 @@ inline double sign_ahead(const Taylor& x) {
   return 0;
 }
 
-/// Returns the sign of x: without derivatives in t there is no later value.
+/// Returns the sign of x. These scalars have no derivative in t that could decide the sign just after t.
 inline double sign_ahead(double x) {
   return x > 0 ? 1 : (x < 0 ? -1 : 0);
 }

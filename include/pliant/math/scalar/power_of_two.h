@@ -15,8 +15,9 @@ inline double power_of_two(double x) {
 }
 
 /// Returns factors s, powers of two, that equalise the diagonal d of a symmetric matrix: all numbers
-/// s_i^2 |d_i| are in [1/2, 4). If other units multiply every d_i by a power of four and all of them by
-/// one power of two, the numbers s_i^2 |d_i| change by one common power of two at most.
+/// s_i^2 |d_i| are in [1/2, 4). Suppose that other units multiply each d_i by a power of four of its own, and
+/// all d_i by one common power of two. Then all numbers s_i^2 |d_i| change by one common power of two at
+/// most.
 template <class Vector>
 typename Vector::PlainObject equalising_scales(const Eigen::MatrixBase<Vector>& d) {
   const auto exponent = [&](Eigen::Index i) {

@@ -68,7 +68,8 @@ inline VecX<double> viscosity_along(const NodalDeformation& local, const VecX<do
   return -f;
 }
 
-/// Returns delta = G - G0 at the nodes in the columns of the rotation: -[d]x. The other columns are zero.
+/// Returns the three columns of the rotation of delta = G - G0 at the nodes: -[d]x. The other columns of
+/// delta are zero.
 inline MatX<double> turned_displacements(const NodalWorkspace& w, Eigen::Index n_d) {
   const Eigen::Index n = w.s.rows();
   MatX<double> delta = MatX<double>::Zero(n_d, 3);
@@ -255,13 +256,14 @@ PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, dou
     J_Q_.col(k) = w.J.transpose() * Q.head(3 * n);
     B_.col(n_r() + 6 + k) = Q;
   }
-  // H0 + delta^T W is the matrix H of part/local/README.md, and K = H - P^T has been factored there.
+  // H0 + delta^T W is the matrix H of include/pliant/part/local/README.md. The evaluation w contains the
+  // factors of the matrix K = H - P^T of this README.md; P follows from H and K.
   const MatX<double> delta_W = delta.transpose() * B_.leftCols(n_r());
   MatX<double> H = w.H0;
   H.middleRows<3>(3) += delta_W;
   P_.setZero(n_r(), n_r());
   if (n_s > 0) {
-    MatX<double> K = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));  // its inverse
+    MatX<double> K = w.solve(MatX<double>(MatX<double>::Identity(n_r(), n_r())));  // K^-1 at first
     const VecX<double> scale = equalising_scales(K.diagonal());
     K = (scale.asDiagonal() * K * scale.asDiagonal()).eval().inverse().eval();
     P_.rightCols(n_s) = (H - scale.asDiagonal() * K * scale.asDiagonal()).transpose().rightCols(n_s);

@@ -37,8 +37,9 @@ class ImplicitNodes final : public ImplicitPart {
  public:
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
-  /// Factors S if c has changed, and at every call if an energy depends on positions. With the stiffness of
-  /// these energies at rest, long steps would fail for parts that are bent or stretched far.
+  /// Factors S if c or the factor of the laws has changed, and at every call if an energy depends on
+  /// positions. With the stiffness of these energies at rest, long steps would fail for parts that are bent
+  /// or stretched far.
   int prepare(const PartWorkspace<double>& w, double c, double t) override;
   void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) override;
   MatX<double> compliance() const override;

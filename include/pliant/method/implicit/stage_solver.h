@@ -65,7 +65,7 @@ class StageSolver {
 
   const Model& model_;
   std::vector<Cluster> clusters_;
-  VecX<double> difference_;  ///< n_v: step of the difference quotients, m, rad or 1
+  VecX<double> difference_;  ///< n_v: step of the difference quotients, m, rad, 1 or kg^(1/2) m
   int max_free_iterations_;  ///< largest number of iterations of a stage without the matrix
   // The current step.
   StepContext* step_ = nullptr;

@@ -59,8 +59,8 @@ class LocalDeformation {
   virtual std::string coordinate_name(Eigen::Index k) const = 0;
   /// Returns the unit of local coordinate number k.
   virtual const char* unit(Eigen::Index k) const = 0;
-  /// Returns an estimate, on the low side, of the time of an evaluation, in microseconds. io uses this time
-  /// to choose the number of threads.
+  /// Returns an estimate, on the low side, of the time of an evaluation, in microseconds. The choices of the
+  /// number of threads (io) and of the integrator (simulate) use this time.
   virtual double cost() const = 0;
   /// Returns the number and the kind of the local coordinates for `pliant info`, for example "600 local, of
   /// 200 nodes and 396 triangles; laws: ..." for 600 local coordinates.

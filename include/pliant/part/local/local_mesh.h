@@ -25,8 +25,8 @@ struct LocalMesh {
   VecX<double> areas() const;
 };
 
-/// Returns the mesh. Its nodal masses are lumped masses with the smallest relative changes that reproduce the
-/// mass, the centre and the second moments of the part. Throws LocalFault if no changes reproduce these
+/// Returns the mesh. Its nodal masses are lumped masses, changed by the smallest relative amounts that give
+/// them the mass, the centre and the second moments of the part. Throws LocalFault if no changes give these
 /// moments or if a changed mass is not positive, and std::invalid_argument as Surface and Solid do.
 LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings);
 

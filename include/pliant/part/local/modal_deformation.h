@@ -29,7 +29,7 @@ struct ModalWorkspace final : LocalWorkspace {
   auto J(Eigen::Index k) const { return shape.middleCols<3>(kJ + 3 * k); }
   // Stage masses().
   Inertia<double> undeformed;  ///< inertia of the part at d = 0
-  MatX<double> R;              ///< R^T B: the rows of C for theta and q_s; the rows of C for c are zero
+  MatX<double> R;              ///< R^T B gives the rows of C for theta and q_s; the rows for c are zero
   MatX<double> M_rr, C;        ///< C: (6 + n_s) x n
   VecMax<double> scale;        ///< factors that scale the diagonal of M at d = 0 to 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< factorisation of scale S scale

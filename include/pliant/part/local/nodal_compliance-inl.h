@@ -36,7 +36,7 @@ PLIANT_INLINE MatX<double> NodalDeformation::inertial_compliance(const std::vect
   const MatX<double> G = detail::frame_at_points(points, w.x.data(), w, n, n_r),
                      G0 = detail::frame_at_points(points, w.s.data(), w, n, n_r);
   // Solve the equations of nodal_deformation.h for unit impulses on v_r and on the points, one in each
-  // column. An impulse at a point is F and F_d, because it acts on d alone; an impulse on v_r is f. on_d is
+  // column. An impulse at a point acts on d alone and belongs to F and F_d; an impulse on v_r is f. on_d is
   // sum G^T F_d - f, and loads is sum G0^T F.
   MatX<double> on_d(n_r, n_r + n_p), loads = MatX<double>::Zero(n_r, n_r + n_p);
   on_d << -MatX<double>::Identity(n_r, n_r), G.transpose();

@@ -142,8 +142,8 @@ class NodalDeformation final : public LocalDeformation {
   void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
                             const double* from, double* to) const;
   /// Transforms positions p and velocities u of all nodes from the current frame to a new frame:
-  /// p <- turn^T (p - shift), u <- turn^T u. The current frame gives the components of shift (m), the origin
-  /// of the new frame, and turn, its orientation.
+  /// p <- turn^T (p - shift), u <- turn^T u. shift (m) is the origin of the new frame and turn its
+  /// orientation, both with components in the current frame.
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:

@@ -1,6 +1,6 @@
-// Function bodies of NodalDeformation (nodal_deformation.h): the reference conditions of the frame, and what
-// changes of the frame do to the nodes; energies and momenta of the part; the mobility of a point; bounds of
-// stiffness for the length of a step.
+// Function bodies of NodalDeformation (nodal_deformation.h): the reference conditions of the frame, and the
+// effect of changes of the frame on the nodes; energies and momenta of the part; the mobility of a point;
+// bounds of stiffness for the length of a step.
 #pragma once
 
 #include <pliant/math/header_only.h>

@@ -12,9 +12,10 @@ namespace pliant {
 
 /// Returns weights over the nodes within a radius (m) of the point at rest. For a point of the surface, phi
 /// multiplies the areas of the nodes of the surface; for any other point, phi multiplies the masses of all
-/// nodes. Then a correction, for a solid at all nodes within the radius, makes the weights reproduce X(m).
-/// Returns mesh_weights() instead if fewer than five nodes have a positive phi times area or mass, or if the
-/// corrected weights do not reproduce X(m) or have a sum of |w| above 4. The result is empty inside a shell.
+/// nodes. A correction then makes the weights reproduce X(m). For a solid, the correction changes the weights
+/// of all nodes within the radius, also inside the body. Returns mesh_weights() instead if fewer than five
+/// nodes have a positive phi times area or mass, or if the corrected weights do not reproduce X(m) or have a
+/// sum of |w| above 4. The result is empty inside a shell.
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius);
 
 }  // namespace pliant

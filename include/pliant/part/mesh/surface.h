@@ -15,7 +15,7 @@ class Surface {
   /// resolution: for a ball the number of edges along an eighth of a great circle, from 1 to 512. A ball has
   /// 24 resolution^2 + 2 vertices and 48 resolution^2 triangles. A torus has 4 resolution vertices around the
   /// tube and 8 resolution around the axis. Throws std::invalid_argument for a resolution outside 1 to 512.
-  /// spacing: for a ball, see BallSurface; these numbers are those of a spacing of 1.
+  /// spacing: for a ball, see BallSurface. The numbers of vertices and triangles are those of a spacing of 1.
   Surface(const Part& part, int resolution, const std::array<int, 3>& spacing = {1, 1, 1});
 
   const std::vector<Material<double>>& material() const { return material_; }

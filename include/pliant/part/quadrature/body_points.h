@@ -13,8 +13,8 @@ struct BodyPoints {
   VecX<double> mass;  ///< kg
 };
 
-/// Returns whether the places of the masses of a prepared part are known. They are not if the user gave the
-/// inertia.
+/// Returns whether the positions of the masses of a prepared part are known. They are unknown if the user
+/// gave the inertia.
 inline bool has_known_masses(const Part& part) {
   return part.mass_points().n_points > 0;
 }
@@ -27,8 +27,7 @@ BodyPoints place_body_points(const Part& part, int n);
 
 /// Returns place_body_points() with masses that have the mass, the centre and the second moments of the part,
 /// so that integrals of affine fields times affine displacements are exact. part: prepared;
-/// has_known_masses() must hold. Throws std::invalid_argument, too, if n points are too few for these
-/// moments.
+/// has_known_masses() must hold. Also throws std::invalid_argument if n is too small for these moments.
 BodyPoints place_matched_body_points(const Part& part, int n);
 
 }  // namespace pliant

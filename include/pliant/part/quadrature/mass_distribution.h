@@ -14,8 +14,8 @@ class Part;
 
 /// The mass density of material points, as a multiple of Part::density(). at: the material points. X: their
 /// places at rest, body frame, m, one column for each. The multiples must be finite and not negative.
-/// The mass points are exact to rounding for functions that are smooth and vary slowly on each panel of the
-/// shape. For others MassPoints::relative_error has the error.
+/// M and g_q from the mass points are exact to rounding for distributions that are smooth and vary slowly on
+/// each panel (shape/panel.h) of the shape. For others, MassPoints::relative_error has the error.
 using MassDistribution =
     std::function<Eigen::VectorXd(const std::vector<Material<double>>& at, const Eigen::Matrix3Xd& X)>;
 

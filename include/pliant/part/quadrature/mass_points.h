@@ -27,18 +27,18 @@ struct MassPoints {
   int level = 0;     ///< level of refinement at which the search along the last direction (z or u) stopped
   /// Relative change of the integrals when the nodes along a direction are doubled once more. The value is 0
   /// if this change is at most 2e-14, or if it is at most 1e-12 and finer rules do not halve it. With a mass
-  /// distribution, the difference of mass, centre and second moments from those of an independent grid
-  /// (body_points.h) counts too, if it is above 1e-7.
+  /// distribution, mass, centre and second moments are compared with those of an independent grid
+  /// (body_points.h). If their difference is above 1e-7, the value is at least this difference.
   double relative_error = 0;
 };
 
 /// Returns the mass points of a part at rest, with the masses of Part::density() and
-/// Part::mass_distribution(). Along each direction, the
-/// number of quadrature nodes is increased until doubling changes no test integral by more than 2e-14 of its
-/// scale (1e-12 where terms cancel). The test integrals are random combinations of the entries of M and g_q,
-/// at states spread over the ranges of the dynamic parameters. Then nodes that the integrals do not need are
-/// removed. doublings: number of further doublings before this removal. Throws std::invalid_argument if the
-/// rest or the initial shape folds over, or if a ring rule needs more than 2 million points.
+/// Part::mass_distribution(). Along each direction, the number of quadrature nodes is increased until
+/// doubling changes no test integral by more than 2e-14 of its scale (1e-12 where terms cancel). The test
+/// integrals are random combinations of the entries of M and g_q, at states spread over the ranges of the
+/// dynamic parameters. Then nodes that the integrals do not need are removed. doublings: number of further
+/// doublings before this removal. Throws std::invalid_argument if the rest or the initial shape folds over,
+/// or if a rule other than "sections" needs more than 2 million points.
 MassPoints place_mass_points(const Part& part, int doublings = 0);
 
 /// Returns the volume of a solid (m^3) or the area of a shell (m^2) at rest.

@@ -37,18 +37,18 @@ class JsonDocument {
   /// The bytes of the file.
   const std::string& text() const { return sources_[0].text; }
 
-  /// Replaces the value at a JSON pointer by the JSON value in `text`. If there is none, adds a key to an
-  /// object or an element to an array ("/-" or the index after the last one). Text that is clearly not JSON
-  /// (arm, 2*t) becomes a string. Faults (no such parent, bad value) are added to `faults`; the document is
-  /// then unchanged. References to values become invalid.
+  /// Replaces the value at a JSON pointer by the JSON value in `text`. If the pointer has no value, adds a
+  /// key to an object or an element to an array ("/-" or the index after the last one). Text that is clearly
+  /// not JSON (arm, 2*t) becomes a string. Faults (no such parent, bad value) are added to `faults`; the
+  /// document is then unchanged. References to values become invalid.
   void set(const std::string& pointer, const std::string& text, Diagnostics& faults);
   /// Applies one assignment "/pointer=value".
   void set(const std::string& assignment, Diagnostics& faults);
 
   /// Returns the value at a JSON pointer, or null if there is none.
   const JsonValue* at(std::string_view pointer) const;
-  /// Returns the JSON pointer of a value of this document, which is found by its address; empty for the root,
-  /// and for a value that is not in this document.
+  /// Returns the JSON pointer of the value of this document that has the address of `value`. Returns an empty
+  /// text for the root, and for a value that is not in this document.
   std::string pointer_to(const JsonValue& value) const;
   /// Returns a value as it is written in the file, shortened for a message. Objects, long arrays and arrays
   /// with an object are only described.
