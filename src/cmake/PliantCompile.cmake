@@ -76,8 +76,10 @@ function(pliant_library name)
   target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_own_sources> ${arg_PRIVATE})
-  if(name STREQUAL "core")  # its sources share many templates of Eigen
-    set_target_properties(pliant_core PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+  if(name STREQUAL "core")
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # the sources share many templates of Eigen; GCC would need 3.3 GB for a batch
+      set_target_properties(pliant_core PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+    endif()
     pliant_precompile(pliant_core HEADERS <pliant/pliant.h> <Eigen/Dense> <Eigen/Sparse>)
   else()
     pliant_precompile(pliant_${name} LIKE pliant_core)
