@@ -17,7 +17,7 @@ pliant_window_packages="libglfw3-dev libimgui-dev"
 # Tests also need GCC for the clients of the library, both libraries that draw without a screen, an independent validator of
 # the scenes' schema, Python for the tests package/scene_keys and package/house, and a virtual display with synthetic inputs
 # for tests of the window.
-pliant_test_packages="g++ catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xauth xdotool"
+pliant_test_packages="g++ catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xdotool"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 

@@ -37,8 +37,8 @@ const char* const kSpringScene = R"({
 /// Runs a shell command on a virtual display, with `folder` as its working folder. Returns its standard
 /// output.
 std::string on_display(const NewFolder& folder, const std::string& command) {
-  const std::string line = "cd '" + folder.path.string() + "' && " + PLIANT_VIRTUAL_DISPLAY +
-                           " -a -s '-screen 0 1280x800x24' " + command + " > .out 2> .err";
+  const std::string line =
+      "cd '" + folder.path.string() + "' && sh '" PLIANT_ON_DISPLAY "' " + command + " > .out 2> .err";
   INFO(line);
   const int status = std::system(line.c_str());
   INFO(bytes_of(folder / ".err"));
@@ -65,8 +65,8 @@ sleep 2
 }
 
 bool no_display() {
-  if (std::string(PLIANT_VIRTUAL_DISPLAY).empty() || !missing_window_packages().empty()) {
-    WARN("skipped: this build has no window, or xvfb-run or xdotool is missing");
+  if (std::string(PLIANT_ON_DISPLAY).empty() || !missing_window_packages().empty()) {
+    WARN("skipped: this build has no window, or Xvfb or xdotool is missing");
     return true;
   }
   return false;
