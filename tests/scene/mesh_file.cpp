@@ -145,6 +145,9 @@ TEST_CASE("files that are not meshes are refused with the place of the fault") {
   refused("a.obj", obj("f 1 2 3\n", "0 x 0"), "a.obj:3:5: found \"x\"");
   refused("a.obj", obj("f 1 2 3\n", "0 nan 0"), "a.obj:3:5: found \"nan\"");
   refused("a.obj", obj("f 1 2 3\n", "0 1e400 0"), "a.obj:3:5: found \"1e400\"");
+  // Added to the place of the first digit, this exponent exceeds the range of long long.
+  refused("a.obj", obj("f 1 2 3\n", "0 1e9223372036854775807 0"),
+          "a.obj:3:5: found \"1e9223372036854775807\"");
   refused("a.obj", obj("f 1 2 3\n", "0 " + std::string(400, '9') + " 0"), "a.obj:3:5: found");
   CHECK(error_of("a.obj", obj("f 1 2 3\n", "0 1 0." + std::string(400, '0') + "1")).empty());
   CHECK(error_of("a.obj", obj("f 1 2 3\n", "0 1 -1e-400")).empty());

@@ -16,15 +16,16 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/// Removes a plus sign, which std::from_chars does not accept, in front of a digit or a decimal point.
+/// Removes a plus sign at the beginning of a word, which std::from_chars does not accept. It stays if it is
+/// the whole word, or if another sign follows.
 std::string_view without_plus(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   return word;
 }
 
-/// Returns whether the absolute value of a decimal number is at least 1. The number is not zero and may have
-/// any number of digits.
-bool is_large(std::string_view digits) {
+/// Returns whether a decimal number outside the range of double is too large; otherwise it is too close to
+/// zero. It may have any number of digits.
+bool is_too_large(std::string_view digits) {
   const std::size_t e = std::min(digits.size(), digits.find_first_of("eE"));
   long long exponent = 0;
   const std::string_view power = without_plus(digits.substr(std::min(digits.size(), e + 1)));
@@ -36,7 +37,7 @@ bool is_large(std::string_view digits) {
                     leading = std::min(mantissa.size(), mantissa.find_first_of("123456789"));
   // The first digit that is not zero is `places` places before the decimal point, or after it if negative.
   const long long places = static_cast<long long>(point) - static_cast<long long>(leading);
-  return exponent + places > 0;
+  return exponent > -places;
 }
 
 }  // namespace
@@ -88,9 +89,9 @@ double Words::number(std::string_view word, const char* meaning) const {
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (digits.empty() || end != digits.data() + digits.size() || error == std::errc::invalid_argument)
-    fail(std::string(meaning) + ", a number with a decimal point");
+    fail(std::string(meaning) + ", a decimal number such as 1.5 or 2e-3");
   if (error == std::errc::result_out_of_range) {
-    if (is_large(digits)) fail(std::string(meaning) + ", a number of absolute value below 1.8e308");
+    if (is_too_large(digits)) fail(std::string(meaning) + ", a number of absolute value below 1.8e308");
     return 0;
   }
   if (!std::isfinite(value)) fail(std::string(meaning) + ", a finite number");
