@@ -1,5 +1,5 @@
-// The search for the first term of an evaluation that is not finite, in the order in which the terms are
-// computed.
+// The search for a term of an evaluation that is not finite. The order of the search is that of
+// TermCheck::first_bad_term(): a term is searched after the terms that it is computed from.
 #include <cmath>
 #include <string>
 
@@ -34,7 +34,6 @@ class TermCheck {
                of_part(i);
       if (model_.parts()[i].q0 < 0) continue;
       if (!w.M().allFinite()) return "the mass matrix M" + of_part(i);
-      if (w.local && !w.local->force.allFinite()) return "the force on the nodes" + of_part(i);
       if (!w.local && !w.inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
     }
     return {};
@@ -84,6 +83,8 @@ class TermCheck {
     for (std::size_t i = 0; i < work_.parts.size(); ++i) {
       const PartModel& m = model_.parts()[i];
       if (m.q0 < 0) continue;
+      if (const auto& local = work_.parts[i].local; local && !local->force.allFinite())
+        return "the force on the local coordinates" + of_part(i);
       if (!work_.parts[i].f.allFinite()) return own_force(m, work_.parts[i]) + of_part(i);
       if (!work_.parts[i].a_r.allFinite() && m.island < 0) return "the acceleration" + of_part(i);
     }
@@ -105,7 +106,7 @@ class TermCheck {
         (part.alpha() * mass_matrix(w).bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) *
         w.q_s_dot;
     if (part.continuum() != nullptr && !std::isfinite(part.continuum()->energy(part, w.q_s)))
-      return "the strain energy of its material";
+      return "the strain energy";
     if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
     if (!damping.allFinite()) return "the damping force D q_dot";
     if (part.drag() > 0 && !(part.drag() * momentum).allFinite()) return "the drag";

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include <pliant/part/local/local_laws.h>
+
 #include "motion.h"
 #include "spring_net.h"
 
@@ -125,6 +127,31 @@ TEST_CASE("N72: a term that is not finite is named, and the last good state is k
         CHECK(simulation.state().work == before.work);
         CHECK(simulation.time() == before.time());
       }
+  }
+}
+
+TEST_CASE("N72: a load that is not finite is named at a part whose local deformation has modes",
+          "[failure]") {
+  for (const auto basis : {LocalSettings::Basis::nodes, LocalSettings::Basis::polynomial}) {
+    MultiBody body;
+    auto& part = body.add<Primitive<Sphere>>("jelly", 1000.0);
+    part.rest({{"r", 0.1}});
+    LocalSettings settings;
+    settings.basis = basis;
+    settings.resolution = 2;
+    settings.energies = {local_law("elastic", {1e4, 0.3})};
+    part.deform_locally(settings);
+    body.force("timed", point(part, 0.3, 1), TimeVector(0, broken_at(0.0195, 1, kNaN), 0));
+    Simulation simulation(body, "rk4");
+    std::string message;
+    for (int i = 0; i < 100 && message.empty(); ++i) {
+      try {
+        simulation.step(1e-3);
+      } catch (const NumericalFailure& failure) {
+        message = failure.what();
+      }
+    }
+    CHECK_THAT(message, has_text("the force 'timed'"));
   }
 }
 
