@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include <pliant/body/step_failure.h>
 #include <pliant/io/format/number_text.h>
 #include <pliant/io/format/ply.h>
 #include <pliant/io/format/whole_file.h>
@@ -27,27 +26,6 @@ void require_same(const char* name, const Value& recorded, const Value& now, con
   else
     message += recorded + " and is now " + now;
   throw RecordingMismatch(message + hint);
-}
-
-/// Returns the counts of the work at the state of a simulation that only the first evaluation with a new
-/// workspace does. Without a correction, a resumed run would count this work twice: at its start, and when it
-/// is resumed. Returns no counts if the evaluation fails: the next step then reports the failure.
-Counters first_evaluation(const Simulation& simulation) {
-  Workspace<double> work;
-  auto evaluated = [&] {
-    const State& state = simulation.state();
-    simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
-    RunWork sum;
-    for (const PartWorkspace<double>& part : work.parts) sum.parts += part.counters;
-    for (const RigidWorkspace& island : work.rigid) sum.parts += island.counters;
-    return sum;
-  };
-  try {
-    const RunWork once = evaluated(), twice = evaluated();
-    return continued({}, once, continued({}, twice, once)).parts;
-  } catch (const StepFailure&) {
-    return {};
-  }
 }
 
 }  // namespace
@@ -270,7 +248,6 @@ void Run::resume_recording(const StableStep& stable) {
     earlier_work_ = from.work;
     earlier_work_.steps.factorisations = record_.work.steps.factorisations;
     work_at_start_ = RunWork{simulation_->step_counters(), simulation_->counters()};
-    work_at_start_->parts += first_evaluation(*simulation_);
   }
   if (from.keep == 0 && simulation_->time() == 0) record_state();
   ++record_.resumed;

@@ -86,7 +86,7 @@ inline void prepare_rigid_part(const Evaluation<double>& e, int i) {
   const bool known = w.rigid == &m;
   evaluate_positions<double>(m, e.t, e.q, e.v, w);
   if (!known) {
-    evaluate_mass<double>(m, w);
+    set_rigid_mass(m, w);
     factor_part_mass(e.model(), i, e.work);
   }
   w.f.setZero(6);

@@ -153,6 +153,14 @@ void evaluate_positions(const PartModel& m, double t, const VecX<S>& q, const Ve
 
 // Stage 2: mass.
 
+/// Sets the constant mass of a rigid part.
+inline void set_rigid_mass(const PartModel& m, PartWorkspace<double>& w) {
+  const Inertia<double>& constant = m.rigid_mass->inertia;
+  w.rigid = &m;
+  w.inertia.mass = constant.mass;
+  w.inertia.moment = constant.moment;
+}
+
 /// Stage 2: M and g_q of Eq. (11). A rigid part has constant M, mass and first moment.
 /// A part that deforms locally has its masses from LocalDeformation::masses(), and no g_q: stage 3 adds the
 /// inertial forces.
@@ -168,11 +176,8 @@ void evaluate_mass(const PartModel& m, PartWorkspace<S>& w) {
     }
   if constexpr (std::is_same_v<S, double>)
     if (m.rigid_mass != nullptr) {
-      const Inertia<double>& constant = m.rigid_mass->inertia;
-      w.rigid = &m;
-      w.inertia.mass = constant.mass;
-      w.inertia.moment = constant.moment;
-      return Part::rigid_force(constant, omega, w.inertia.g_q, w.counters);
+      set_rigid_mass(m, w);
+      return Part::rigid_force(m.rigid_mass->inertia, omega, w.inertia.g_q, w.counters);
     }
   m.part->evaluate_inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
 }
