@@ -3,9 +3,9 @@
 //   assembly_bench [FOLDER] [LAYOUTS]     writes assembly_bench.csv to FOLDER and a table to standard output
 //
 // A layout is a tree of ellipsoids on ball joints; the first ellipsoid is connected to the world. Their
-// poses are random, within a cube whose half side is a given number of body lengths. Some layouts have up to
-// one more joint for every four parts. These joints close loops, and it may be impossible to satisfy them.
-// LAYOUTS: number of layouts of each kind (1000). For 100 parts there are a tenth as many.
+// poses are random, within a cube whose half side is a given number of body lengths (column distance). Some
+// layouts have up to one more joint for every four parts. These joints close loops, and it may be impossible
+// to satisfy them. LAYOUTS: number of layouts of each kind (1000). For 100 parts there are a tenth as many.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -95,9 +95,9 @@ int main(int argc, char** argv) {
   try {
     bench::TableFile file(
         argc > 1 ? std::string(argv[1]) + "/assembly_bench.csv" : "",
-        "parts,loops,apart,layouts,closed,mean_iterations,most_iterations,ms,widest_gap_m\n");
+        "parts,loops,distance,layouts,closed,mean_iterations,most_iterations,ms,widest_gap_m\n");
     const int layouts = argc > 2 ? std::atoi(argv[2]) : 1000;
-    std::printf("parts loops  apart | layouts  closed  iterations  (max)      ms  widest gap, m\n");
+    std::printf("parts loops distance | layouts  closed  iterations  (max)      ms  widest gap, m\n");
     for (const int parts : {1, 4, 12, 100})
       for (const bool looped : {false, true}) {
         const int loops = looped ? parts / 4 : 0;
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
           const Statistics t = run(parts, loops, distance, parts == 100 ? layouts / 10 : layouts);
           const double iterations = t.closed > 0 ? t.iterations / t.closed : 0,
                        ms = 1e3 * t.seconds / t.layouts;
-          std::printf("%5d %5d %6.0f | %7d %7d %8.1f (%4d) %9.3f  %.0e\n", parts, loops, distance, t.layouts,
+          std::printf("%5d %5d %8.0f | %7d %7d %8.1f (%4d) %9.3f  %.0e\n", parts, loops, distance, t.layouts,
                       t.closed, iterations, t.max_iterations, ms, t.max_gap);
           file.row("%d,%d,%g,%d,%d,%.2f,%d,%.4f,%.1e\n", parts, loops, distance, t.layouts, t.closed,
                    iterations, t.max_iterations, ms, t.max_gap);

@@ -79,15 +79,17 @@ void add_view(CLI::App& app, Action& action) {
   command->add_option("--script", options->view.script, "File of synthetic input, for tests")
       ->type_name("FILE");
   command
-      ->add_option("--bench", options->view.bench,
-                   "Play for this wall time (s), print pictures per second and speed, and close")
+      ->add_option(
+          "--bench", options->view.bench,
+          "Play for this wall time (s), print pictures per second and simulated time / wall time, and close")
       ->check(positive_number())
       ->type_name("S");
   command->footer(
-      "Mouse: the left button drags the part under it by a spring; where there is no part, it turns the "
-      "view, "
-      "as\n"
-      "the right button does; the middle button, or Shift and the left one, moves it; the wheel zooms.\n"
+      "Mouse: the left button drags the part under the pointer by a spring; where there is no part, it "
+      "turns\n"
+      "the view, as the right button does; the middle button, or Shift and the left one, moves the view; "
+      "the\n"
+      "wheel zooms.\n"
       "Keys: space plays and pauses, s makes one step, r resets, w saves, Escape closes; c, f, j and m "
       "switch\n"
       "strain colours, forces, joints and springs, and meshes on and off.\n"

@@ -10,7 +10,8 @@ using namespace pliant;
 struct Wire {
   static constexpr const char* name = "wire";
   static constexpr const char* formula = "(x - r cos(k z), y - r sin(k z)) = 0";
-  static constexpr int rows = 2, first = 1, second = 0;  // first, second: numbers of points on the sides
+  // first, second: numbers of points on the first and on the second side
+  static constexpr int rows = 2, first = 1, second = 0;
   static constexpr bool one_sided = false;
   double r, k;
 

@@ -341,8 +341,9 @@ TEST_CASE("steps of 100 times the explicit limit are stable for a thousand steps
 TEST_CASE(
     "damping by beta of a stretched rubber block only takes energy, in steps far above the explicit limit",
     "[implicit][stable][long]") {
-  // The block hangs at its top, and its weight stretches it by a tenth. There V of the viscous forces differs
-  // from K, and the elastic forces turn the frame.
+  // The block hangs at its top, and its weight stretches it by a tenth. In this state the matrix V of the
+  // viscous forces (method/implicit/README.md) is not K, and forces on displaced nodes also turn the frame of
+  // the part.
   for (const double beta : {0.003, 0.01, 0.1}) {
     MultiBody body;
     auto& bar = body.add<Primitive<Box>>("bar", 1000.0);
@@ -637,7 +638,7 @@ void drop(Basis basis, double E) {
   CHECK(impulse / (500 * h) == Approx(weight).epsilon(1e-2));
   CHECK(simulation.ledger().kinetic < 1e-4 * weight * radius);
   CHECK(deep < 0.02 * radius);  // the ball hits at 1 m/s, which is a hundredth of the radius in a step
-  // The weight flattens the ball a little; the steps do not change this.
+  // The weight flattens the ball a little. The long steps neither lift nor lower its centre much further.
   const double sag = radius - simulation.state().q[2];
   CHECK(sag > -3e-4 * radius);
   CHECK(sag < 30 * weight / (E * radius));

@@ -267,7 +267,8 @@ TEST_CASE("a bent bar has the stiffness of plane sections with constant shape", 
 }
 
 TEST_CASE("a closed spherical shell that breathes has the exact frequency", "[continuum]") {
-  // omega^2 r^2 rho (1 - nu^2) / E = 2 (1 + nu).
+  // omega^2 r^2 rho (1 - nu_P^2) / E = 2 (1 + nu_P), where nu_P is Poisson's ratio. The density of a shell is
+  // its mass per area, so rho = density / thickness.
   const double r = 0.8, thickness = 0.02, density = 3;
   auto part = make_part("shell", "sphere", {}, density);
   part->make_shell().rest({{"r", r}}).make_dynamic({"r"});
@@ -277,8 +278,9 @@ TEST_CASE("a closed spherical shell that breathes has the exact frequency", "[co
         Approx(2).epsilon(kStrainTolerance));
 }
 
-TEST_CASE("shells: the force is the derivative of the energy, and rotation causes no strain",
-          "[continuum][long]") {
+TEST_CASE(
+    "shells: the force is the derivative of the energy, and bends in all directions have equal energies",
+    "[continuum][long]") {
   Draws draws(9);
   for (const Body& body : {bodies()[0], bodies()[2], bodies()[3]}) {
     const auto part = make(body, "st_venant_kirchhoff_membrane", true);

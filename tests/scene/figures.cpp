@@ -128,7 +128,7 @@ TEST_CASE("forces mould the superspheres of the gallery, and hold their shapes",
   CHECK(balance < 0.01);  // J; the springs and forces do more than 1000 J of work
 }
 
-TEST_CASE("the spring of fig. 1 raises a bulge of the membrane, and the parameters answer", "[long]") {
+TEST_CASE("the spring of fig. 1 raises a bulge of the membrane, stretches the part and shears it", "[long]") {
   double bulge = 0, elsewhere = 0, a3 = 0, shear = 0;
   run("pull", 1.8, [&](Simulation& simulation) {
     const PartModel& blob = simulation.model().parts()[0];
@@ -185,9 +185,9 @@ TEST_CASE("the balloons have different strings, angles and first impacts, and no
   std::vector<double> times;
   for (const auto& [pair, time] : met) times.push_back(time);
   std::sort(times.begin(), times.end());
-  const auto apart = [](double a, double b) { return b - a < 0.02; };
+  const auto close = [](double a, double b) { return b - a < 0.02; };
   CHECK(met.size() >= 8);
-  CHECK(std::unique(times.begin(), times.end(), apart) - times.begin() >= 5);
+  CHECK(std::unique(times.begin(), times.end(), close) - times.begin() >= 5);
 }
 
 }  // namespace figures_test

@@ -42,7 +42,7 @@ class FinishedRun {
 
 }  // namespace
 
-TEST_CASE("a ball rests on a box behind a glTF node of negative scale", "[contact]") {
+TEST_CASE("a ball rests on a box that a glTF node mirrors by a negative scale", "[contact]") {
   const FinishedRun run(
       "box.gltf", mesh_samples::gltf_cube(R"([{"mesh": 0, "scale": [-1, 1, 1], "translation": [0, 0, -1]}])"),
       R"json({"time": {"end": 2, "step": 0.002, "integrator": "rk4"},

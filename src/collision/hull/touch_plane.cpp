@@ -3,7 +3,7 @@
 namespace pliant {
 
 namespace {
-/// Number of points that represent a round end face.
+/// Number of points on the rim of a round end face, besides its lowest point.
 constexpr int kRimPoints = 4;
 }  // namespace
 

@@ -22,8 +22,8 @@ Follows follows(const Part& part) {
     if (link.sections != Sections::stay_affine) worst = std::max(worst, Follows::section);
     tilted = tilted || link.sections == Sections::tilt;
   }
-  // A shear after a bend depends on z too. The shear maps a tilted plane section affinely to a plane section,
-  // so that the result is not Follows::free.
+  // A bend tilts the sections. A shear after the bend depends on z, which then varies over a section. But it
+  // is affine in (x, y, z), so that plane sections stay plane: the result is not Follows::free.
   return worst;
 }
 
@@ -116,11 +116,12 @@ RestShape::RestShape(const Part& whole, const MassDistribution* mass_distributio
 }
 
 void RestShape::find_kinks() {
-  // Material points of the trigonometric map have kinks at 45 degrees only, for all exponents.
+  // Without bounded exponents a shape has the trigonometric map. Its integrands have kinks at u or v = 45
+  // degrees only, for all exponents.
   if (!part.shape().bounded_exponents()) return;
   // In the radial map, the edges of a superellipsoid move over the material when its exponents change. With
-  // y = log |tan| of the angles u and v at rest, and rest exponents eps, the edges along v are at y = 0, and
-  // the edges along u are between y = 0 and y = log 2 / 2 (eps2_now - eps2) / eps1. Their widths in y are
+  // y = log |tan| of the angles u and v at rest, and exponents eps1 and eps2 at rest: an edge is at y(v) = 0,
+  // and others are between y(u) = 0 and y(u) = log 2 / 2 (eps2_now - eps2) / eps1. Kinks::width is
   // proportional to the exponents.
   std::vector<Range> values;
   std::vector<double> at_rest;

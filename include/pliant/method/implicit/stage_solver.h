@@ -30,7 +30,7 @@ class StageSolver {
   void begin_step(StepContext& step, double c, const ErrorScale& scale);
   /// Solves the stage at time t (s) for q and v, whose values before the call are the first guess. On return
   /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
-  /// changes most, if the iteration does not converge. Throws NumericalFailure, with the first part, if a
+  /// changes most, if the iteration does not converge. Throws NumericalFailure, naming the first part, if a
   /// cluster has too many velocities for a matrix.
   void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// Multiplies an error estimate by the inverse matrix, so that components that the step damps away vanish.
@@ -43,7 +43,7 @@ class StageSolver {
     std::vector<int> parts;
     std::vector<Eigen::Index> velocities;  ///< indices of the velocities of these parts in v
     MatX<double> A_q, A_v;
-    VecX<double> scale;  ///< powers of two near the scales of these velocities
+    VecX<double> scale;  ///< powers of two near the entries of difference_ for these velocities
     /// Factor of the matrix for velocities in units of their scales. The pivots thus do not depend on units.
     Eigen::PartialPivLU<MatX<double>> factor;
   };
@@ -53,7 +53,8 @@ class StageSolver {
   /// Evaluates A_q and A_v of each cluster at (t, q, v) by difference quotients, and factors its matrix.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
   /// Sets one column of A_q or A_v of each cluster to a difference quotient: the change of the accelerations
-  /// in the workspace from v_dot_, divided by the difference. difference: differences(column).
+  /// in the workspace from v_dot_, divided by the difference. difference: differences(column) for A_q,
+  /// slow_rate() times this for A_v.
   void set_column(Eigen::Index column, const VecX<double>& difference, MatX<double> Cluster::*A);
   /// Returns the differences for one column of the matrices of all clusters: n_v numbers, with at most one
   /// nonzero number for each cluster.

@@ -1,12 +1,12 @@
 // Local deformation by n modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
 // modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape.
 // Therefore the reference conditions of the rest shape hold for every q_d. Let p_a = s_a + d_a, J_a and e_a
-// be the coefficients of p, of J and of the constant 1 at the spectral nodes a (modal_basis.h), B_a the rows
-// of B for a, and G_a = [e_a I, -[p_a]x, J_a]. Then
+// be the coefficients of p, of J and of the constant 1 for the field phi_a of the basis (modal_basis.h), m_a
+// the mass of this field, B_a the rows of B for a, and G_a = [e_a I, -[p_a]x, J_a]. Then
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
 // f_r and f_d are the forces on (c, theta, q_s) and on q_d. S is a Schur complement, not the shape matrix of
-// Eq. (5). The current reference shape s is not in the span of the fields phi_a. Integrals of s alone are
+// Eq. (5). The current reference shape s is not in the span of these fields. Integrals of s alone are
 // therefore those of the mass points of the part (part/inertia.h).
 #pragma once
 
