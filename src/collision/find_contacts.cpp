@@ -153,6 +153,20 @@ bool ContactFinder::is_convex(int i) const {
   return *convex;
 }
 
+bool ContactFinder::is_smooth(const Contact& contact) const {
+  if (contact.obstacle >= 0 && !(*obstacles_)[at(contact.obstacle)].is_flat()) return false;
+  return is_round(contact.a.part) || is_round(contact.b.part);
+}
+
+/// Whether a part has no face, no edge and no nearly flat region.
+bool ContactFinder::is_round(int i) const {
+  if (i < 0 || !surfaces_[at(i)]) return false;
+  const ShapeInterface& shape = model_->parts()[at(i)].part->shape();
+  const double* a = scratch_->values[at(i)].b.data();
+  return shape.hull_pieces() > 0 && shape.has_support(a) && !shape.has_flat_regions(a) &&
+         !shape.has_end_faces() && !shape.half_sizes(a);
+}
+
 std::optional<Contact> ContactFinder::follow(const Contact& contact) const {
   const int a = contact.a.part;
   if (contact.plane < 0 || contact.a.at_nodes() || !uses_hull(a)) return std::nullopt;

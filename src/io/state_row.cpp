@@ -140,13 +140,15 @@ std::vector<Column> contact_cache_columns() {
           {"z", "m", ""},
           {"force_x", "N", "mean force on part a in the last step (or its second half), world"},
           {"force_y", "N", ""},
-          {"force_z", "N", ""}};
+          {"force_z", "N", ""},
+          {"lasting", "1", "1 if this force acted during the whole step, else 0"}};
 }
 
 std::vector<double> cached_contact_row(const CachedContact& contact) {
   std::vector<double> row(contact.between.begin(), contact.between.end());
   row.insert(row.end(), contact.x.data(), contact.x.data() + 3);
   row.insert(row.end(), contact.force.data(), contact.force.data() + 3);
+  row.push_back(contact.lasting ? 1 : 0);
   return row;
 }
 
@@ -158,7 +160,8 @@ bool read_cached_contact(const double* row, CachedContact& contact) {
   }
   contact.x = Vec3<double>(row[4], row[5], row[6]);
   contact.force = Vec3<double>(row[7], row[8], row[9]);
-  return true;
+  contact.lasting = row[10] == 1;
+  return row[10] == 0 || row[10] == 1;
 }
 
 void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row) {

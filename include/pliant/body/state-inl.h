@@ -60,6 +60,7 @@ PLIANT_INLINE std::uint64_t hash(const State& state) {
     hash.add_each(contact.between);
     hash.add_each(contact.x);
     hash.add_each(contact.force);
+    hash.add(&contact.lasting, sizeof contact.lasting);
   }
   for (const StepMemory& memory : state.step_memory) {
     hash.add(&memory.h, sizeof memory.h);

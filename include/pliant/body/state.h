@@ -38,14 +38,19 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
-/// start). A contact is stored only if it shares a moving part with other contacts and its impulse is not
-/// zero. Contacts on single nodes of a mesh, and contacts that moving parts connect with such contacts, are
-/// not stored: their impulses start at zero. The impulses of limits and strings start at zero too.
+/// start), and predicts this impulse if the step predicts impulses (contact/predicted_impulses.h). Contacts
+/// without impulse are not stored. Without predictions, contacts that share no moving part with others are
+/// not stored either. Contacts on single nodes of a mesh, and contacts that moving parts connect with such
+/// contacts, are not stored: their impulses start at zero. The impulses of limits and strings start at zero
+/// too.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
   /// Mean force on part a, N, world: of the last step, or of its second half if the step was doubled.
   Vec3<double> force;
+  /// Whether this force acted during the whole step: the contact rested, and no impact happened at the bodies
+  /// that contacts connect with it.
+  bool lasting = false;
 };
 
 /// Step length and other results of the last step of a part, if parts step in clusters

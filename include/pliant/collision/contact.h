@@ -34,6 +34,10 @@ struct Contact {
   double since = 0;
   /// Least normal velocity with which the sides separate after the impulse, m/s.
   double rebound = 0;
+  /// Impulse that has acted on side a at the start of the motion, N s, world (contact/predicted_impulses.h).
+  Vec3<double> predicted = Vec3<double>::Zero();
+  /// Distance by which this impulse alone opens the contact in the motion, m.
+  double lift = 0;
 };
 
 }  // namespace pliant

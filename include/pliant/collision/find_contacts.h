@@ -51,6 +51,10 @@ class ContactFinder {
   }
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
+  /// Returns whether the contact point moves smoothly while the sides roll and slide: one side is a part
+  /// without faces, edges and nearly flat regions, with its shape in the last call of find(), and the other
+  /// side is no obstacle that bends.
+  bool is_smooth(const Contact& contact) const;
   /// Returns a contact with a plane, moved to the state and time of the last call of find(). Side a keeps its
   /// material point; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane
   /// does not act, for parts without a hull, and for parts without nearly flat regions. The contact points of
@@ -106,6 +110,7 @@ class ContactFinder {
   bool has_fixed_shape(int part) const;
   bool uses_hull(int part) const;
   bool is_convex(int part) const;
+  bool is_round(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
   /// after: the end of a step that is done; nullptr for a coming step.
   Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;

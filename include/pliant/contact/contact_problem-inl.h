@@ -5,6 +5,8 @@
 #include <pliant/contact/contact_problem.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/speed_scale.h>
@@ -33,16 +35,6 @@ inline Mat3<double> axes(const Contact& contact) {
 /// size of the part.
 inline constexpr double kAtLimit = 1e-6;
 
-/// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
-inline int near_limit(const PartModel& m, int k, const State& state) {
-  const int mode = state.at_limit[at(m.limit0 + k)];
-  if (mode != 0) return mode;
-  const Range& limits = m.limits[at(k)];
-  const double distance = kAtLimit * m.part->size() / lever(m, 6 + k), value = state.q[m.q0 + 7 + k];
-  if (value - limits.min <= distance) return -1;
-  return limits.max - value <= distance ? 1 : 0;
-}
-
 /// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad is
 /// equivalent to a displacement by four sizes of the part, twice its extent. With a smaller weight of
 /// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
@@ -62,6 +54,16 @@ inline VecX<double> levers(const Model& model, const Movers& movers, const Mover
 
 }  // namespace contact_problem
 
+PLIANT_INLINE int near_limit(const PartModel& m, int k, const State& state) {
+  const int mode = state.at_limit[at(m.limit0 + k)];
+  if (mode != 0) return mode;
+  const Range& limits = m.limits[at(k)];
+  const double distance = contact_problem::kAtLimit * m.part->size() / lever(m, 6 + k),
+               value = state.q[m.q0 + 7 + k];
+  if (value - limits.min <= distance) return -1;
+  return limits.max - value <= distance ? 1 : 0;
+}
+
 PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                                              const std::vector<Contact>& contacts, const State* start)
     : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model, work) {
@@ -76,6 +78,18 @@ PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& st
   before_ = movers_.velocities(state, work);
   after_ = before_;
   shift_.setZero(movers_.n_x());
+  add_predicted();
+}
+
+/// Computes the changes of velocity by the predicted impulses.
+PLIANT_INLINE void ContactProblem::add_predicted() {
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    if (contacts_[at(k)].predicted.isZero(0)) continue;
+    if (predicted_.size() == 0) predicted_.setZero(movers_.n_x());
+    warm_start_at(k, contacts_[at(k)].predicted);
+    system_.add_change(k, 1, predicted_);
+    system_.impulse(k).setZero();
+  }
 }
 
 PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Contact& contact, double sign) {
@@ -148,7 +162,7 @@ PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         int mode = state_.at_limit[at(m.limit0 + k)];
-        if (mode == 0 && start != nullptr) mode = contact_problem::near_limit(m, k, *start);
+        if (mode == 0 && start != nullptr) mode = near_limit(m, k, *start);
         if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 ||
             work_.parts[at(part)].without_inertia(6 + k))
           continue;
@@ -307,6 +321,7 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
     along = 0;
     along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
   }
+  if (has_predicted()) after_ -= predicted_;
   const CoulombResult result = system_.solve(after_, {0, model_.body().contact.tolerance});
   ContactSolution solution{
       {}, {}, result.residual, result.worst_residual, result.worst_accepted, result.sweeps, result.fallbacks};
@@ -341,7 +356,8 @@ PLIANT_INLINE void ContactProblem::add_joint_impulses(VecX<double>& rows) const 
 PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_time) {
   for (const Mover& mover : movers_.all()) {
     auto displacement = shift_.segment(mover.first, mover.size);
-    const auto change = after(mover) - before(mover);
+    VecX<double> change = after(mover) - before(mover);
+    if (has_predicted()) change += predicted_.segment(mover.first, mover.size);
     const bool too_far = [&] {
       if (mover.node >= 0) return displacement.norm() > max_time * change.norm();
       const VecX<double> levers = contact_problem::levers(model_, movers_, mover);
@@ -349,6 +365,47 @@ PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_ti
     }();
     if (too_far) displacement = limit_time * change;
   }
+  if (has_predicted()) shift_ -= max_time * predicted_;
+}
+
+PLIANT_INLINE double ContactProblem::own_speed(int contact) const {
+  const Contact& c = contacts_[at(contact)];
+  return (system_.effect(contact, contact) * contact_problem::axes(c).transpose() * c.predicted)[0];
+}
+
+PLIANT_INLINE std::vector<double> ContactProblem::close_gaps() {
+  const int n = static_cast<int>(contacts_.size());
+  auto movers_of = [&](int k) {
+    std::array<int, 2> numbers{-1, -1};
+    const Contact& contact = contacts_[at(k)];
+    if (!(contact.lift > 0) || !(system_.impulse(k)[0] > 0)) return numbers;
+    for (const bool second : {false, true}) {
+      const int part = second ? contact.b.part : contact.a.part;
+      if (part >= 0 && model_.parts()[at(part)].q0 >= 0) numbers[second] = movers_.mover_of_part(part);
+    }
+    return numbers;
+  };
+  std::vector<int> sharing(movers_.all().size(), 0);  // number of these contacts at each mover
+  for (int k = 0; k < n; ++k)
+    for (const int mover : movers_of(k))
+      if (mover >= 0) ++sharing[at(mover)];
+  std::vector<double> impulses(at(n), 0);
+  VecX<double> displacements = VecX<double>::Zero(movers_.n_x());
+  for (int k = 0; k < n; ++k) {
+    int connected = 0;  // number of these contacts at its movers
+    for (const int mover : movers_of(k))
+      if (mover >= 0) connected += sharing[at(mover)] - (connected > 0 ? 1 : 0);  // contact k once
+    if (connected == 0) continue;
+    system_.constant(k).setZero();  // a velocity, which is not to be added to a displacement
+    const double gap = contacts_[at(k)].gap + system_.velocity(k, shift_)[0];
+    if (!(std::abs(gap) <= contacts_[at(k)].lift)) continue;  // not an error of the prediction
+    impulses[at(k)] = -gap / (system_.effect(k, k)(0, 0) * connected);
+    const Vec3<double> impulse = std::exchange(system_.impulse(k), Vec3<double>(impulses[at(k)], 0, 0));
+    system_.add_change(k, 1, displacements);
+    system_.impulse(k) = impulse;
+  }
+  shift_ += displacements;
+  return impulses;
 }
 
 PLIANT_INLINE void ContactProblem::separate_bodies(const std::vector<double>& max_separation,

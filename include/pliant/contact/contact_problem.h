@@ -12,13 +12,18 @@
 namespace pliant {
 
 struct ContactSolution {
-  std::vector<Vec3<double>> impulse;   ///< of each contact on side a, N s, world
+  /// Of each contact on side a, with the predicted impulse, N s, world.
+  std::vector<Vec3<double>> impulse;
   std::vector<Vec3<double>> velocity;  ///< of side a relative to side b after the impulses, m/s, world
   double residual = 0;                 ///< largest violation of Coulomb's law, m/s
   double worst_residual = 0, worst_accepted = 0;  ///< see CoulombResult, m/s
   int sweeps = 0;                                 ///< see CoulombResult
   int fallbacks = 0;                              ///< see CoulombResult
 };
+
+/// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
+/// Within 1e-6 sizes of a limit, as a displacement, it is at the limit.
+int near_limit(const PartModel& m, int k, const State& state);
 
 class ContactProblem {
  public:
@@ -29,7 +34,8 @@ class ContactProblem {
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts, const State* start = nullptr);
 
-  /// Computes the impulses of contacts, limits and strings. Each contact rebounds with Contact::rebound.
+  /// Computes the impulses of contacts, limits and strings. Each contact rebounds with Contact::rebound. The
+  /// impulses replace the predicted ones (Contact::predicted): velocities change by the differences.
   /// limit_time: the time since the impulses on limits and strings acted, s, like Contact::since of a
   /// contact.
   ContactSolution solve(double limit_time);
@@ -44,12 +50,30 @@ class ContactProblem {
   /// Limits the displacements of movers that the impulses cause. Large impulses with different times
   /// Contact::since (on a light part between heavy ones) may nearly cancel in velocity, but not in
   /// displacement. If a displacement exceeds max_time (s) times the change of velocity, it becomes limit_time
-  /// (s) times this change.
+  /// (s) times this change. Then subtracts the displacements that predicted impulses have caused in a motion
+  /// of max_time seconds.
   void bound_shifts(double limit_time, double max_time);
+  /// Adds displacements along the normals that close the gaps and remove the overlaps of contacts with
+  /// predicted impulses, to first order. If the bodies of a contact have n of these contacts, its
+  /// displacement closes 1/n of its gap. Returns an impulse times a time for each contact, kg m: the normal
+  /// impulse that would cause its displacement in one second.
+  std::vector<double> close_gaps();
+  /// Returns the normal velocity that the predicted impulse of a contact alone causes at this contact, m/s.
+  double own_speed(int contact) const;
+  /// Adds the predicted impulses to the velocities.
+  void apply_predicted() { after_ = before_ + predicted_; }
+  /// Subtracts the predicted impulses from the velocities, and subtracts the displacements that they have
+  /// caused in a motion of h seconds.
+  void take_back_predicted(double h) {
+    after_ = before_ - predicted_;
+    shift_ = -h * predicted_;
+  }
+  bool has_predicted() const { return predicted_.size() > 0; }
   /// Adds displacements, without friction, that remove the remaining overlaps: each contact opens by at most
   /// its max_separation (m), and overlaps up to `tolerance` (m) may remain.
   void separate_bodies(const std::vector<double>& max_separation, double tolerance = 0);
 
+  const Model& model() const { return model_; }
   const Movers& movers() const { return movers_; }
   /// Return the velocities of a mover before and after the impulses, and its displacement by the impulses:
   /// mover.size numbers each.
@@ -90,6 +114,7 @@ class ContactProblem {
   void add_limits(const State* start);
   void add_strings();
   void complete();
+  void add_predicted();
   void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;
   void add_joint_responses(int contact);
 
@@ -104,6 +129,7 @@ class ContactProblem {
   std::vector<String> strings_;
   std::vector<PointJet<double>> jets_;
   VecX<double> before_, after_, shift_;
+  VecX<double> predicted_;  // changes of velocity by the predicted impulses; empty: there are none
 };
 
 }  // namespace pliant

@@ -12,6 +12,7 @@
 
 #include <pliant/body/advance.h>
 #include <pliant/body/speed_scale.h>
+#include <pliant/contact/connected_bodies.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/damping_work.h>
 #include <pliant/contact/load_work.h>
@@ -30,6 +31,8 @@ inline constexpr int kMaxChainLinks = 4;
 /// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
 /// than this share of the size of the smaller body.
 inline constexpr double kSameContact = 0.05;
+/// A motion is a whole step if it is shorter by at most this share.
+inline constexpr double kRounding = 1e-9;
 /// Largest number of warm-started steps in a row.
 inline constexpr int kMaxWarmStartAge = 10;
 /// Returns a state in which the impulses of a solved problem have acted for `time` seconds at all contacts.
@@ -121,7 +124,9 @@ PLIANT_INLINE double ContactResolution::match_distance(const Contact& contact) c
   return contact_resolution::kSameContact * smaller_size(dynamics_.model(), contact);
 }
 
-PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
+PLIANT_INLINE void ContactResolution::begin_step(const State& state, bool predicts) {
+  predicts_ = predicts;
+  step_length_ = state.h;
   resolved_.clear();
   travel_.clear();
   resolutions_ = 0;
@@ -129,11 +134,10 @@ PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
       state.contact_cache.empty() || state.contact_cache_age >= contact_resolution::kMaxWarmStartAge;
 }
 
-PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, double h,
-                                                 const std::vector<Contact>& contacts,
-                                                 ContactProblem& problem) const {
-  if (cold_start_) return;
+PLIANT_INLINE std::vector<int> ContactResolution::cached_numbers(const State& state, double t,
+                                                                 const std::vector<Contact>& contacts) const {
   const std::vector<CachedContact>& cache = state.contact_cache;
+  std::vector<int> numbers(contacts.size(), -1);
   std::vector<char> taken(cache.size(), 0);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const auto [first, last] = std::equal_range(cache.begin(), cache.end(), contacts[k], ByPair{});
@@ -145,19 +149,54 @@ PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, d
         [&](std::size_t i) { return taken[i] != 0; });
     if (found == end) continue;
     taken[found] = 1;
-    problem.warm_start_at(static_cast<int>(k), h * cache[found].force);
+    numbers[k] = static_cast<int>(found);
   }
+  return numbers;
 }
 
-/// Records the impulses of one resolution, for the contact cache. Zero impulses, and impulses that cannot be
-/// a start value (may_warm_start), are not recorded.
+PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, double h,
+                                                 const std::vector<Contact>& contacts,
+                                                 ContactProblem& problem) const {
+  if (cold_start_) return;
+  const std::vector<int> numbers = cached_numbers(state, t, contacts);
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    if (numbers[k] >= 0)
+      problem.warm_start_at(static_cast<int>(k), h * state.contact_cache[at(numbers[k])].force);
+}
+
+/// Returns whether the force of each contact lasts: it and all contacts of the bodies that contacts connect
+/// with it rest during the whole motion.
+PLIANT_INLINE std::vector<bool> ContactResolution::lasting(const ResolvedMotion& motion,
+                                                           const std::vector<Contact>& contacts) const {
+  const Model& model = dynamics_.model();
+  ConnectedBodies connected(model);
+  for (const Contact& contact : contacts) connected.connect(contact.a.part, contact.b.part);
+  auto set_of = [&](const Contact& contact) { return connected.set_of(contact.a.part, contact.b.part); };
+  std::vector<bool> changes(model.parts().size(), false), lasts;
+  for (const Contact& contact : contacts)
+    if (const int set = set_of(contact); set >= 0 && contact.since != motion.force_time)
+      changes[at(set)] = true;
+  for (const Contact& contact : contacts) {
+    const int set = set_of(contact);
+    lasts.push_back(set >= 0 && !changes[at(set)]);
+  }
+  return lasts;
+}
+
+/// Records the impulses of one resolution, for the contact cache. Zero impulses are not recorded. Impulses
+/// that cannot be a start value (may_warm_start) are recorded only if impulses are predicted.
 PLIANT_INLINE void ContactResolution::record_resolved(const State& state, double t,
+                                                      const ResolvedMotion& motion,
                                                       const std::vector<Contact>& contacts,
                                                       const ContactProblem& problem,
                                                       const std::vector<Vec3<double>>& impulses) {
+  std::vector<bool> lasts;
+  const bool whole_step = motion.h >= (1 - contact_resolution::kRounding) * step_length_;
+  if (predicts_ && whole_step) lasts = lasting(motion, contacts);
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    if (problem.may_warm_start(static_cast<int>(k)) && !impulses[k].isZero(0))
-      resolved_.push_back({{key_of(contacts[k]), local_position(contacts[k], state, t), impulses[k]},
+    if ((predicts_ || problem.may_warm_start(static_cast<int>(k))) && !impulses[k].isZero(0))
+      resolved_.push_back({{key_of(contacts[k]), local_position(contacts[k], state, t), impulses[k],
+                            predicts_ && whole_step && lasts[k]},
                            match_distance(contacts[k]),
                            resolutions_});
   ++resolutions_;
@@ -180,18 +219,21 @@ PLIANT_INLINE void ContactResolution::end_step(double h, State& state) const {
       continue;
     }
     merged[same].cached.force += next.cached.force;
+    merged[same].cached.lasting = merged[same].cached.lasting && next.cached.lasting;
     merged[same].resolution = next.resolution;
   }
   state.contact_cache.clear();
   for (const Resolved& resolved : merged)
     if (const Vec3<double> force = resolved.cached.force / h; force.allFinite())
-      state.contact_cache.push_back({resolved.cached.between, resolved.cached.x, force});
+      state.contact_cache.push_back(
+          {resolved.cached.between, resolved.cached.x, force, resolved.cached.lasting});
   state.contact_cache_age = cold_start_ || state.contact_cache.empty() ? 0 : state.contact_cache_age + 1;
 }
 
 PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedMotion& motion,
                                               std::vector<Contact> contacts) {
   fully_separated_.clear();
+  if (contacts.empty()) return;
   resolve_once(step, motion, std::move(contacts), motion.h > 0);
 }
 
@@ -217,9 +259,11 @@ PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const 
                                                        ContactProblem& problem) {
   State& state = step.state;
   const std::vector<Vec3<double>> u_start = problem.velocities(motion.before);
+  std::vector<Vec3<double>> u_free;
+  if (problem.has_predicted()) u_free = problem.velocities(state);
   if (warm) warm_start(state, step.t, motion.h, contacts, problem);
   ContactSolution solution = problem.solve(motion.force_time);
-  if (motion.h > 0) record_resolved(state, step.t, contacts, problem, solution.impulse);
+  if (motion.h > 0) record_resolved(state, step.t, motion, contacts, problem, solution.impulse);
   step.counters.contact_sweeps += solution.sweeps;
   step.counters.contact_fallbacks += solution.fallbacks;
   step.counters.contact_residual = std::max(step.counters.contact_residual, solution.residual);
@@ -228,12 +272,22 @@ PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const 
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
-    const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
-    state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
-    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.prescribed_velocity);
+    double work = p.dot(mean), along = p.dot(c.normal) * mean.dot(c.normal);
+    if (!c.predicted.isZero(0)) {
+      const Vec3<double> other = 0.5 * (u_free[k] - solution.velocity[k]) - u_start[k];
+      work += c.predicted.dot(other);
+      along += c.predicted.dot(c.normal) * other.dot(c.normal);
+    }
+    state.work[static_cast<int>(Work::friction)] += work - along;
+    state.work[static_cast<int>(Work::contact)] += along + (p - c.predicted).dot(c.prescribed_velocity);
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(motion.force_time, motion.h);
+  if (!problem.has_predicted()) return solution;
+  const std::vector<double> closing = problem.close_gaps();
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    state.work[static_cast<int>(Work::contact)] -=
+        closing[k] * (u_free[k] - u_start[k]).dot(contacts[k].normal) / motion.h;
   return solution;
 }
 
@@ -255,7 +309,6 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   const State& before = motion.before;
   const double h = motion.h, t = step.t;
   State& state = step.state;
-  if (contacts.empty()) return;
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double work_before = state.work.sum();
   evaluate_touched(dynamics_, state, t, contacts, step.work);
@@ -271,7 +324,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
              at_nodes = std::any_of(contacts.begin(), contacts.end(), is_at_nodes);
   std::optional<DampingWork> damping;
   if (!instant && motion.force_time < h && !at_nodes)
-    damping.emplace(dynamics_, before, state,
+    damping.emplace(dynamics_, DampingWork::Starts{before.v, motion.v_unpredicted}, state,
                     contact_resolution::without_rebound(dynamics_.model(), contacts, parts), t, h);
   const bool damped = damping && damping->acts();
   const bool by_energy = driven || instant || damped || state.at_limit != before.at_limit ||
@@ -288,8 +341,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   };
   LoadWork loads(dynamics_, state);
   double balance = by_energy ? dynamics_.energy(t, state.q, state.v, parts, scratch_) - work_before : 0;
-  State reference;
-  if (by_displacement) reference = state;
+  State reference = by_displacement ? state : State();
   q_before_ejection_ = state.q;
   apply_solution(problem, dynamics_.model(), step.work, state);
   if (by_displacement) {

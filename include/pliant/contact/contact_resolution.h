@@ -33,11 +33,20 @@ struct ContactRecord {
 
 /// The motion at whose end contacts are resolved.
 struct ResolvedMotion {
-  const State& before;  ///< state at its start; for impacts at one instant the state of the step itself
-  double force_time;    ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
-  double h;             ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated
+  /// State at its start, after predicted impulses; for impacts at one instant the state of the step itself.
+  const State& before;
+  double force_time;  ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
+  double h;           ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated
   bool separates = true;  ///< whether overlaps are separated afterwards; another resolution follows if not
+  /// Velocities at its start before predicted impulses; nullptr: there are none.
+  const VecX<double>* v_unpredicted = nullptr;
 };
+
+/// Returns the data of a motion for the resolution at its end.
+inline ResolvedMotion resolved_motion(const FreeMotion& free, bool separates = true) {
+  return {free.before, free.force_time(), free.h, separates,
+          free.has_predicted() ? &free.unpredicted.v : nullptr};
+}
 
 class ContactResolution {
  public:
@@ -46,8 +55,9 @@ class ContactResolution {
                     RestingContacts& resting, ContactRecord& record);
 
   /// Begins a step: clears the impulses of the last step, and decides whether the contact solutions of this
-  /// step start from the contact cache of the state.
-  void begin_step(const State& state);
+  /// step start from the contact cache of the state. predicts: whether impulses are predicted; then the cache
+  /// also contains contacts that share no part with others.
+  void begin_step(const State& state, bool predicts);
   /// Stores the impulses of this step of h seconds in the contact cache of a state.
   void end_step(double h, State& state) const;
 
@@ -61,6 +71,8 @@ class ContactResolution {
   /// than min_impact_speed (m/s) are ignored.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
+  /// Returns the numbers of contacts in the contact cache of a state; -1: not in the cache.
+  std::vector<int> cached_numbers(const State& state, double t, const std::vector<Contact>& contacts) const;
   /// Sets the start values of the impulses of a problem to those of the cached forces over h seconds.
   /// Contacts that are not in the cache start from zero, and so do all contacts of a cold start.
   void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
@@ -88,8 +100,10 @@ class ContactResolution {
   void append_to_record(const std::vector<Contact>& contacts, const ContactSolution& solution);
   double largest_separation(const Contact& contact, double h) const;
   void extend_travel(const Contact& contact, double distance);
-  void record_resolved(const State& state, double t, const std::vector<Contact>& contacts,
-                       const ContactProblem& problem, const std::vector<Vec3<double>>& impulses);
+  std::vector<bool> lasting(const ResolvedMotion& motion, const std::vector<Contact>& contacts) const;
+  void record_resolved(const State& state, double t, const ResolvedMotion& motion,
+                       const std::vector<Contact>& contacts, const ContactProblem& problem,
+                       const std::vector<Vec3<double>>& impulses);
   Vec3<double> local_position(const Contact& contact, const State& state, double t) const;
   double match_distance(const Contact& contact) const;
   void add_ejections(const State& state);
@@ -108,7 +122,8 @@ class ContactResolution {
   Workspace<double> scratch_;
   std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
-  bool cold_start_ = false;
+  bool cold_start_ = false, predicts_ = false;
+  double step_length_ = 0;  // s
   // Travel of each part since the last separation, m: the distance towards the bodies that it meets, plus its
   // displacements by impulses (ejections).
   std::vector<double> travel_;

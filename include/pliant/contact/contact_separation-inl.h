@@ -9,10 +9,10 @@
 #include <utility>
 
 #include <pliant/body/speed_scale.h>
+#include <pliant/contact/connected_bodies.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/load_work.h>
 #include <pliant/contact/touched_parts.h>
-#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
@@ -87,28 +87,25 @@ PLIANT_INLINE void ContactResolution::record_overlaps(const std::vector<Contact>
 PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contacts,
                                                     const Workspace<double>& work) const {
   const Model& model = dynamics_.model();
-  DisjointSets connected(model.parts().size());
+  ConnectedBodies connected(model);
   auto is_whole = [&](const ContactSide& side) {
     return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
            !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
   };
-  // A body is represented by the first part of its island.
-  auto body_of = [&](int part) {
-    const int island = model.parts()[at(part)].island;
-    return connected.root(island < 0 ? part : model.islands()[at(island)].parts.front());
-  };
   for (const Contact& contact : contacts)
-    if (is_whole(contact.a) && is_whole(contact.b))
-      connected.unite(body_of(contact.a.part), body_of(contact.b.part));
+    if (is_whole(contact.a) && is_whole(contact.b)) connected.connect(contact.a.part, contact.b.part);
   std::set<std::pair<int, int>> pairs;
   std::vector<bool> affected(model.parts().size(), false);
   for (const Contact& contact : contacts) {
     if (!(contact.gap < -allowed_overlap(contact))) continue;
     if (is_at_nodes(contact)) pairs.insert({contact.a.part, contact.b.part});
     for (const ContactSide* side : {&contact.a, &contact.b})
-      if (is_whole(*side)) affected[at(body_of(side->part))] = true;
+      if (is_whole(*side)) affected[at(connected.set_of(side->part, -1))] = true;
   }
-  auto moves = [&](int part) { return part >= 0 && affected[at(body_of(part))]; };
+  auto moves = [&](int part) {
+    const int set = connected.set_of(part, -1);
+    return set >= 0 && affected[at(set)];
+  };
   contacts.erase(
       std::remove_if(contacts.begin(), contacts.end(),
                      [&](const Contact& c) {

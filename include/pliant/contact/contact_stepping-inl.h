@@ -14,6 +14,7 @@
 #include <pliant/body/step_failure.h>
 #include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/impact_timing.h>
+#include <pliant/contact/predicted_impulses.h>
 #include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
@@ -24,6 +25,9 @@ namespace contact_stepping {
 /// Rebounds slower than this are left out (FreeMotion::min_impact_speed). Unit: the speed that gravity gives
 /// a body in a step.
 inline constexpr double kMinImpactSpeed = 1e-3;
+/// If impulses are predicted, contacts without restitution rest up to this normal speed, in the same unit.
+/// A contact point that rolls leaves a normal speed of second order in the length of the step.
+inline constexpr double kMaxInelasticSpeed = 0.1;
 /// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up
 /// to the speed that gravity gives a body in a step.
 inline constexpr double kResidualFactor = 8;
@@ -138,10 +142,11 @@ struct ContactStepping::Progress {
   double begin, end, now;  ///< s
   double time_tolerance;   ///< times closer than this are equal, s
   double longest;  ///< largest length of the next motion, s; in a longer one, parts would move too far
-  double min_impact_speed, max_resting_speed;  ///< see FreeMotion, m/s
+  double min_impact_speed, max_resting_speed, max_inelastic_speed;  ///< see FreeMotion, m/s
   /// Whether a part that deforms locally came near another body although this was not predicted.
   bool soft_nearby;
-  int impacts;  ///< number of impacts located so far
+  bool predicts;  ///< whether impulses of resting contacts are predicted
+  int impacts;    ///< number of impacts located so far
   StageClock clock;
 
   bool finished() const { return !(now < end - time_tolerance); }
@@ -153,8 +158,8 @@ struct ContactStepping::Progress {
 struct ContactStepping::Motion {
   FreeMotion free;
   ContactFinder::Neighbourhood predicted, travelled;  ///< predicted before the motion; found after it
-  std::vector<Contact> resting;                       ///< resting contacts at its start
-  std::vector<Contact> contacts;                      ///< contacts at its end
+  std::vector<Contact> resting;   ///< resting contacts at its start; those with predicted impulses are last
+  std::vector<Contact> contacts;  ///< contacts at its end
 
   /// Whether no bodies come near each other.
   bool is_free() const { return predicted.empty && travelled.empty; }
@@ -222,10 +227,26 @@ PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& metho
                min_impact_speed = contact_stepping::kMinImpactSpeed * gravity_speed,
                max_resting_speed = std::max(min_impact_speed, residual_speed);
   state.contact_residual = 0;
-  resolution_.begin_step(state);
+  const bool predicts = tolerance == 0 && meshes_.empty() && method.reach() == 0.5 && !is_sequential();
+  resolution_.begin_step(state, predicts);
   resting_.widen_gap(residual_speed * h);
-  return {method, step, begin, end, begin, time_tolerance, h, min_impact_speed, max_resting_speed,
-          false,  0,    {}};
+  const double max_inelastic_speed =
+      predicts ? std::max(max_resting_speed, contact_stepping::kMaxInelasticSpeed * gravity_speed)
+               : max_resting_speed;
+  return {method,
+          step,
+          begin,
+          end,
+          begin,
+          time_tolerance,
+          h,
+          min_impact_speed,
+          max_resting_speed,
+          max_inelastic_speed,
+          false,
+          predicts,
+          0,
+          {}};
 }
 
 /// Advances by one motion, which is as long as the contacts allow: a motion that was too long is repeated
@@ -245,8 +266,8 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::advance(Progress& progres
   }
 }
 
-/// Stage 1: predicts which bodies the next motion brings near each other, and how long it may be. Wakes
-/// sleeping parts whose Drive (sleeping.h) changes.
+/// Stage 1: predicts which bodies the next motion brings near each other, and how long it may be.
+/// Applies predicted impulses. Wakes sleeping parts whose Drive (sleeping.h) changes.
 PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progress) {
   State& state = progress.step.state;
   const double now = progress.now, remaining = progress.end - now,
@@ -263,10 +284,15 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progres
   free.reach = progress.method.reach();
   free.min_impact_speed = progress.min_impact_speed;
   free.max_resting_speed = progress.max_resting_speed;
-  if (!motion.predicted.empty) motion.resting = resting_.at_rest(state, now, free.max_resting_speed);
+  free.max_inelastic_speed = progress.max_inelastic_speed;
+  if (!motion.predicted.empty) motion.resting = resting_.at_rest(state, now, free);
   free.h = resting_.longest(free, motion.resting, dynamics_.model().body().gravity_at(now).norm());
   if (now != state.time() || free.h != state.h) set_step(state, now, free.h);
   progress.clock.lap(times_.finding);
+  if (progress.predicts && !motion.resting.empty()) {
+    apply_predicted_impulses({progress.step, finder_, resolution_}, free, motion.resting);
+    progress.clock.lap(times_.resolution);
+  }
   free.before = state;
   return motion;
 }
@@ -290,15 +316,16 @@ PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) cons
   throw NumericalFailure(message.str(), progress.now);
 }
 
-/// Stage 3: finds the contacts at the end of the motion. Returns false, and restores the state at its start,
-/// if the motion was too long, woke sleeping parts, or brought a part that deforms locally near another body
-/// without a prediction.
+/// Stage 3: finds the contacts at the end of the motion, and assigns predicted impulses to them. Returns
+/// false, and restores the state at its start, if the motion was too long, woke sleeping parts, brought a
+/// part that deforms locally near another body without a prediction, or if impulses were predicted and an
+/// impact is to be located.
 PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   State& state = progress.step.state;
   const FreeMotion& free = motion.free;
   auto repeat = [&](double longest) {
     progress.longest = longest;
-    state = free.before;
+    state = free.restart();
     return false;
   };
   motion.travelled = finder_.neighbourhood_of(free.before, state, free.begin, free.h,
@@ -313,7 +340,24 @@ PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   const double longest = resting_.longest(free, motion.resting, state);
   if (longest < free.h - progress.time_tolerance) return repeat(longest);
   motion.contacts = resting_.contacts_after(free, motion.resting, state);
+  if (free.has_predicted() && !complete_prediction(motion, progress)) return repeat(free.h);
   return !wake_touched(motion.contacts, free, state);
+}
+
+/// Assigns the predicted impulses of a motion to the contacts at its end, and takes back those of pairs that
+/// no longer touch. Returns false if an impact is to be located: the motion is to be repeated, and the rest
+/// of the step predicts no impulses.
+PLIANT_INLINE bool ContactStepping::complete_prediction(Motion& motion, Progress& progress) {
+  for (;;) {
+    if (!impacts_to_locate(motion).empty()) {
+      progress.predicts = false;
+      return false;
+    }
+    std::vector<Contact> lost = assign_predicted_impulses(motion.resting, motion.contacts);
+    if (lost.empty()) return true;
+    take_back_predicted_impulses({progress.step, finder_, resolution_}, motion.free, std::move(lost));
+    motion.contacts = resting_.contacts_after(motion.free, motion.resting, progress.step.state);
+  }
 }
 
 /// Returns the neighbourhood of a motion of at most `length` seconds from the time `now`. gravity_reach: see
@@ -337,7 +381,7 @@ PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& con
   meshes_.find(state, motion.end(), mesh_contacts);
   if (!sleeping_.touches_sleeping(contacts, state) && !sleeping_.touches_sleeping(mesh_contacts, state))
     return false;
-  state = motion.before;
+  state = motion.restart();
   sleeping_.wake_touched(contacts, state);
   sleeping_.wake_touched(mesh_contacts, state);
   return true;
@@ -355,7 +399,7 @@ PLIANT_INLINE void ContactStepping::cut_at_friction_event(Motion& motion, Progre
   progress.clock.lap(times_.resolution);
   if (!event) return;
   progress.longest = *event;
-  progress.step.state = motion.free.before;
+  progress.step.state = motion.free.restart();
   motion = advance(progress);
   at_friction_event_ = motion.free.h == *event;
 }
@@ -420,7 +464,7 @@ PLIANT_INLINE void ContactStepping::resolve_resting(const Motion& motion, StepCo
   meshes_.find(step.state, step.t, contacts);
   time_impacts(finder_, free, step.state, contacts);
   clock.lap(times_.finding);
-  resolution_.resolve(step, {free.before, free.force_time(), free.h}, std::move(contacts));
+  resolution_.resolve(step, resolved_motion(free), std::move(contacts));
   clock.lap(times_.resolution);
 }
 
@@ -477,7 +521,7 @@ PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext
       since_first = std::max(since_first, contact.since);
   }
   if (since_first == 0 || !any_rebound) return;
-  resolution_.resolve(step, {free.before, free.force_time(), free.h, false}, std::move(resting));
+  resolution_.resolve(step, resolved_motion(free, false), std::move(resting));
   for (Contact& contact : impacts) {
     contact.rebound = 0;
     if (rest.has(contact))
@@ -508,7 +552,7 @@ PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) 
   has_unlocated_ = has_unlocated_ || !contacts.empty();
   progress.clock.lap(times_.finding);
   if (is_sequential()) resolve_sequence(motion, step);
-  resolution_.resolve(step, {free.before, free.force_time(), free.h}, contacts);
+  resolution_.resolve(step, resolved_motion(free), contacts);
   resolution_.resolve_chain(step, std::move(contacts), free.min_impact_speed);
   sleeping_.wake_moved(state);
   progress.clock.lap(times_.resolution);

@@ -93,6 +93,7 @@ class ContactStepping {
   Motion predict(Progress& progress);
   [[noreturn]] void fail_too_fast(const Progress& progress) const;
   bool detect(Motion& motion, Progress& progress);
+  bool complete_prediction(Motion& motion, Progress& progress);
   ContactFinder::Neighbourhood look_ahead(const State& state, double now, double length, double fall,
                                           bool touch);
   bool wake_touched(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);

@@ -1,7 +1,7 @@
 // Function bodies of damping_work.h: Simpson's rule for a power that is quadratic in velocities that are
 // linear in time,
 //   W = h / 6 (P(v_0) + 4 P((v_0 + v_1) / 2) + P(v_1)).
-// P(v_0) is the same with and without impulses.
+// P(v_0) is the same with and without impulses, unless a part of the impulses acts at the start.
 #pragma once
 
 #include <pliant/contact/damping_work.h>
@@ -18,9 +18,11 @@ namespace pliant {
 
 namespace damping_work {
 
-/// Factors of P in the middle and at the end of a motion of the formula above, without h.
+/// Factors of P in the middle and at the end of a motion of the formula above, without h. Together with that
+/// of the start their sum is 1.
 struct Weights {
   double middle, end;
+  double start() const { return 1 - middle - end; }
 };
 inline constexpr Weights kLinear{2.0 / 3, 1.0 / 6};
 
@@ -36,9 +38,9 @@ inline Weights of_drag(double x) {
 
 }  // namespace damping_work
 
-PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const State& before, const State& free,
+PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const Starts& starts, const State& free,
                                        const std::vector<int>& parts, double t, double h)
-    : dynamics_(dynamics), v_before_(before.v), t_(t), h_(h) {
+    : dynamics_(dynamics), starts_(starts), t_(t), h_(h) {
   for (const int i : parts) {
     const PartModel& m = dynamics.model().parts()[at(i)];
     const bool damped = m.n_s > 0 && (m.part->alpha() > 0 || m.part->beta() > 0);
@@ -49,7 +51,7 @@ PLIANT_INLINE DampingWork::DampingWork(const Dynamics& dynamics, const State& be
   q_ = free.q;
   work_.inputs = free.inputs;
   work_.parts.resize(dynamics.model().parts().size());
-  without_impulses_ = works(free.v);
+  without_impulses_ = works(starts_.free, free.v);
 }
 
 /// Finds the dampers at parts that impulses move, and the parts that their evaluation needs.
@@ -78,15 +80,19 @@ PLIANT_INLINE void DampingWork::find_dampers(const std::vector<int>& moved) {
   at_dampers_.erase(std::remove(at_dampers_.begin(), at_dampers_.end(), -1), at_dampers_.end());
 }
 
-/// Returns the works of the formula above without the terms of v_0, at the positions at the end of the motion
-/// without impulses.
-PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_end) {
+/// Returns the works of the formula above, at the positions at the end of the motion without impulses. The
+/// terms of v_0 are left out if no part of the impulses acts at the start.
+PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_start, const VecX<double>& v_end) {
+  enum Point { start, middle, end };
   const Model& model = dynamics_.model();
   Works sum = Works::Zero();
-  for (const bool middle : {true, false}) {
-    const VecX<double> v = middle ? VecX<double>(0.5 * (v_before_ + v_end)) : v_end;
+  for (const Point point : {start, middle, end}) {
+    if (point == start && starts_.corrected == nullptr) continue;
+    const VecX<double> v = point == start    ? v_start
+                           : point == middle ? VecX<double>(0.5 * (v_start + v_end))
+                                             : v_end;
     const auto factor = [&](const damping_work::Weights& weights) {
-      return h_ * (middle ? weights.middle : weights.end);
+      return h_ * (point == start ? weights.start() : point == middle ? weights.middle : weights.end);
     };
     const Evaluation<double> e{dynamics_, t_, q_, v, work_};
     for (const int i : damped_) {
@@ -112,7 +118,8 @@ PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_end) {
 
 PLIANT_INLINE void DampingWork::correct(State& after) {
   if (!acts()) return;
-  const Works change = works(after.v) - without_impulses_;
+  const VecX<double>& v_start = starts_.corrected == nullptr ? starts_.free : *starts_.corrected;
+  const Works change = works(v_start, after.v) - without_impulses_;
   after.work[static_cast<int>(Work::damping)] += change[0];
   after.work[static_cast<int>(Work::drag)] += change[1];
   after.work[static_cast<int>(Work::spring_damping)] += change[2];

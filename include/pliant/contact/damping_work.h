@@ -11,11 +11,15 @@ namespace pliant {
 
 class DampingWork {
  public:
-  /// before, free: the states at the start and at the end, at time t (s), of a motion of h seconds without
-  /// impulses. `before` must outlive the object. parts: those that the impulses move, sorted. Drag and
-  /// damping of parts that deform locally are left out.
-  DampingWork(const Dynamics& dynamics, const State& before, const State& free, const std::vector<int>& parts,
-              double t, double h);
+  /// Velocities at the start of the motion, which must outlive the object.
+  struct Starts {
+    const VecX<double>& free;       ///< with predicted impulses (predicted_impulses.h)
+    const VecX<double>* corrected;  ///< before these impulses; nullptr: there are none
+  };
+  /// free: the state at the end, at time t (s), of a motion of h seconds without impulses at its end. parts:
+  /// those that the impulses move, sorted. Drag and damping of parts that deform locally are left out.
+  DampingWork(const Dynamics& dynamics, const Starts& starts, const State& free,
+              const std::vector<int>& parts, double t, double h);
   /// Whether a moved part has drag, damping or a damper.
   bool acts() const { return !damped_.empty() || !springs_.empty() || !drives_.empty(); }
   /// Corrects the works of damping, drag and dampers of springs and drives in the state after the impulses.
@@ -27,10 +31,10 @@ class DampingWork {
   using Works = Vec3<double>;  // of damping, drag, and dampers of springs and drives, J
 
   void find_dampers(const std::vector<int>& moved);
-  Works works(const VecX<double>& v_end);
+  Works works(const VecX<double>& v_start, const VecX<double>& v_end);
 
   const Dynamics& dynamics_;
-  const VecX<double>& v_before_;
+  const Starts starts_;
   VecX<double> q_;  // at the end of the motion without impulses
   double t_, h_;
   std::vector<int> damped_;                  // the moved parts with drag or damping

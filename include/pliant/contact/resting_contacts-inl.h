@@ -23,9 +23,15 @@ inline constexpr double kRestingGap = 1e-6;
 inline constexpr double kMaxWidening = 1000;
 /// If at most this share of the parts has moved, only these parts are searched again.
 inline constexpr double kFewMovedParts = 0.7;
+/// Predicted impulses open a contact by at most this multiple of Contact::lift, even if its force ceases in
+/// the motion.
+inline constexpr double kLifts = 2;
 /// A contact at the end of a motion and one of the same pair at its start are the same contact if their
 /// contact points are nearer than this, in sizes of the smaller part.
 inline constexpr double kSamePoint = 0.2;
+/// The same distance if the impulse is predicted: such contacts are those of round parts, which roll. Their
+/// normals also have at least this scalar product.
+inline constexpr double kSamePredictedPoint = 0.5, kSameNormals = 0.7;
 /// A motion that is predicted or repeated has at most this share of the length in which a resting contact
 /// sinks by ContactFinder::max_resolved_depth.
 inline constexpr double kRepeatShare = 0.95;
@@ -96,12 +102,19 @@ PLIANT_INLINE bool RestingContacts::is_resting(const Contact& contact, double ga
   return gap < -max_gap || (gap <= max_gap && std::abs(velocity) <= max_speed);
 }
 
-PLIANT_INLINE std::vector<Contact> RestingContacts::at_rest(const State& state, double t, double max_speed) {
+PLIANT_INLINE double RestingContacts::max_speed(const FreeMotion& motion, const Contact& contact) const {
+  if (motion.max_inelastic_speed == motion.max_resting_speed || contact.restitution > 0)
+    return motion.max_resting_speed;
+  return finder_.is_smooth(contact) ? motion.max_inelastic_speed : motion.max_resting_speed;
+}
+
+PLIANT_INLINE std::vector<Contact> RestingContacts::at_rest(const State& state, double t,
+                                                            const FreeMotion& motion) {
   std::vector<Contact> resting = near(state, t);
   resting.erase(std::remove_if(resting.begin(), resting.end(),
                                [&](const Contact& c) {
                                  return !is_resting(c, c.gap, finder_.velocity(state, c).dot(c.normal),
-                                                    max_speed);
+                                                    max_speed(motion, c));
                                }),
                 resting.end());
   return resting;
@@ -115,7 +128,7 @@ PLIANT_INLINE bool RestingContacts::was_resting(const Contact& contact, const Fr
   const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),
                u = finder_.velocity(state, contact).dot(contact.normal),
                opening = motion.h * ((1 - motion.reach) * u_start + motion.reach * u);
-  return is_resting(contact, contact.gap - opening, u_start, motion.max_resting_speed);
+  return is_resting(contact, contact.gap - opening, u_start, max_speed(motion, contact));
 }
 
 PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
@@ -160,17 +173,20 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
                                                                    const State& state) const {
   double max_gap = resting.empty() ? 0 : gap();
   for (const Contact& contact : resting)
-    max_gap =
-        std::max(max_gap, gap() + motion.force_time() * finder_.velocity(state, contact).dot(contact.normal));
+    max_gap = std::max({max_gap, gap() + resting_contacts::kLifts * contact.lift,
+                        gap() + motion.force_time() * finder_.velocity(state, contact).dot(contact.normal)});
   const Pairs at_start(resting);
   auto rested = [&](const Contact& contact) {
-    if (!at_start.has(contact)) return false;
-    const double same_distance = resting_contacts::kSamePoint * smaller_size(model_, contact);
-    return (contact.gap <= gap(contact) &&
-            at_start.has(
-                contact,
-                [&](const Contact& other) { return (contact.x - other.x).norm() <= same_distance; })) ||
-           was_resting(contact, motion, state);
+    const double gap = this->gap(contact), size = smaller_size(model_, contact);
+    const auto is_lasting = [&](const Contact& other) {
+      const double distance = (contact.x - other.x).norm();
+      if (!(other.lift > 0)) return contact.gap <= gap && distance <= resting_contacts::kSamePoint * size;
+      return contact.gap <= gap + resting_contacts::kLifts * other.lift &&
+             distance <= resting_contacts::kSamePredictedPoint * size &&
+             contact.normal.dot(other.normal) >= resting_contacts::kSameNormals;
+    };
+    return at_start.has(contact, is_lasting) ||
+           (at_start.has(contact) && was_resting(contact, motion, state));
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
   add_followed(resting, max_gap, found);

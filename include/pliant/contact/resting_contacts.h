@@ -26,8 +26,9 @@ class RestingContacts {
   /// parts.
   const std::vector<Contact>& near(const State& state, double t);
   /// Returns the resting contacts among near(): those that overlap by more than gap(contact), and those with
-  /// a gap of at most gap(contact) and a normal speed of at most max_speed (m/s).
-  std::vector<Contact> at_rest(const State& state, double t, double max_speed);
+  /// a gap of at most gap(contact) and a normal speed of at most motion.max_resting_speed or, for smooth
+  /// contacts (ContactFinder::is_smooth) without restitution, motion.max_inelastic_speed.
+  std::vector<Contact> at_rest(const State& state, double t, const FreeMotion& motion);
   /// Returns the longest motion (s), at most motion.h, in which contacts that rest at the start sink by at
   /// most ContactFinder::max_resolved_depth, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
@@ -40,14 +41,16 @@ class RestingContacts {
   /// Keeps the order of found.
   void add_followed(const std::vector<Contact>& resting, double max_gap, std::vector<Contact>& found) const;
   /// Returns the contacts at `state`, the end of a motion: those that overlap, and those that rested at the
-  /// start and are still near, because rounding or the motion may have opened them. Contact::since of resting
-  /// contacts is motion.force_time(): their impulses stand for forces during the whole motion.
+  /// start and are still near, because rounding, the motion or predicted impulses may have opened them.
+  /// Contact::since of resting contacts is motion.force_time(): their impulses stand for forces during the
+  /// whole motion.
   std::vector<Contact> contacts_after(const FreeMotion& motion, const std::vector<Contact>& resting,
                                       const State& state) const;
 
  private:
   double widened(double tight) const;
   bool few_moved(const State& state);
+  double max_speed(const FreeMotion& motion, const Contact& contact) const;
   bool is_resting(const Contact& contact, double gap, double velocity, double max_speed) const;
   bool was_resting(const Contact& contact, const FreeMotion& motion, const State& state) const;
 

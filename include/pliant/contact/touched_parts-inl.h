@@ -127,6 +127,14 @@ PLIANT_INLINE void evaluate_touched(const Dynamics& dynamics, const State& state
     dynamics.factor_joints(t, state.q, state.v, state.joints, model.islands()[at(i)], work);
 }
 
+PLIANT_INLINE void apply_velocities(const ContactProblem& problem, const Model& model,
+                                    const Workspace<double>& work, State& state) {
+  touched_parts::for_each_part(problem.movers().all(), [&](const Mover& mover, int part, int first) {
+    const PartModel& m = model.parts()[at(part)];
+    scatter_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
+  });
+}
+
 PLIANT_INLINE void apply_solution(const ContactProblem& problem, const Model& model,
                                   const Workspace<double>& work, State& state) {
   touched_parts::for_each_part(problem.movers().all(), [&](const Mover& mover, int part, int first) {

@@ -55,6 +55,8 @@ class ObstacleMesh {
   bool closed() const { return closed_; }
   /// Whether the mesh is a flat plate with two sides and without thickness.
   bool is_plate() const { return closed_ && faces_.size() == 2; }
+  /// Whether the mesh is in one plane.
+  bool is_flat() const { return faces_.size() == 1 || is_plate(); }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
   /// Finds the triangles whose boxes meet a box, in ascending order; `found` is overwritten.
