@@ -59,7 +59,7 @@ Result run(Build&& build, const std::string& method, double h, double end) {
 
 }  // namespace
 
-TEST_CASE("a rolling egg has errors of second order with fixed steps", "[contact]") {
+TEST_CASE("a rolling egg has errors of second order with fixed steps", "[contact][long]") {
   const double end = 1;
   const bool dynamic = GENERATE(false, true);
   const auto build = [&](MultiBody& body) { tilted_egg(body, dynamic); };
@@ -233,7 +233,7 @@ TEST_CASE("a rolling body resumes from its state with the same bits", "[contact]
   CHECK(hash(resumed.state()) == hash(simulation.state()));
 }
 
-TEST_CASE("eggs on a joint roll with errors of second order, and the joint stays closed", "[contact]") {
+TEST_CASE("eggs on a joint roll with errors of second order, and the joint stays closed", "[contact][long]") {
   const double end = 0.4;
   const auto build = [](MultiBody& body) {
     floor_with_friction(body, 2);
