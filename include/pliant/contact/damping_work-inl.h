@@ -83,16 +83,16 @@ PLIANT_INLINE void DampingWork::find_dampers(const std::vector<int>& moved) {
 /// Returns the works of the formula above, at the positions at the end of the motion without impulses. The
 /// terms of v_0 are left out if no part of the impulses acts at the start.
 PLIANT_INLINE DampingWork::Works DampingWork::works(const VecX<double>& v_start, const VecX<double>& v_end) {
-  enum Point { start, middle, end };
+  enum Instant { start, middle, end };
   const Model& model = dynamics_.model();
   Works sum = Works::Zero();
-  for (const Point point : {start, middle, end}) {
-    if (point == start && starts_.corrected == nullptr) continue;
-    const VecX<double> v = point == start    ? v_start
-                           : point == middle ? VecX<double>(0.5 * (v_start + v_end))
-                                             : v_end;
+  for (const Instant instant : {start, middle, end}) {
+    if (instant == start && starts_.corrected == nullptr) continue;
+    const VecX<double> v = instant == start    ? v_start
+                           : instant == middle ? VecX<double>(0.5 * (v_start + v_end))
+                                               : v_end;
     const auto factor = [&](const damping_work::Weights& weights) {
-      return h_ * (point == start ? weights.start() : point == middle ? weights.middle : weights.end);
+      return h_ * (instant == start ? weights.start() : instant == middle ? weights.middle : weights.end);
     };
     const Evaluation<double> e{dynamics_, t_, q_, v, work_};
     for (const int i : damped_) {
