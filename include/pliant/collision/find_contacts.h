@@ -53,7 +53,7 @@ class ContactFinder {
   static bool precedes(const Contact& one, const Contact& other);
   /// Returns whether the contact point moves smoothly while the sides roll and slide: one side is a part
   /// without faces, edges and nearly flat regions, with its shape in the last call of find(), and the other
-  /// side is no obstacle that bends.
+  /// side is a part, a plane or a flat obstacle (ObstacleMesh::is_flat).
   bool is_smooth(const Contact& contact) const;
   /// Returns a contact with a plane, moved to the state and time of the last call of find(). Side a keeps its
   /// material point; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane

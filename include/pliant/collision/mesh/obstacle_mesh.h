@@ -55,7 +55,7 @@ class ObstacleMesh {
   bool closed() const { return closed_; }
   /// Whether the mesh is a flat plate with two sides and without thickness.
   bool is_plate() const { return closed_ && faces_.size() == 2; }
-  /// Whether the mesh is in one plane.
+  /// Whether the mesh is one flat face, or a plate.
   bool is_flat() const { return faces_.size() == 1 || is_plate(); }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
