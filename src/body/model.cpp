@@ -110,6 +110,7 @@ void Model::add_part(Part& part, RigidMasses& known) {
   PartModel m;
   m.part = &part;
   m.use = part.use();
+  m.size = part.size();
   m.n_s = part.n_s();
   m.motion = part.motion();
   m.local = part.local();

@@ -33,8 +33,8 @@ std::pair<int, int> in_order(int a, int b) {
 }  // namespace
 
 double smaller_size(const Model& model, const Contact& contact) {
-  const double a = model.parts()[at(contact.a.part)].part->size();
-  return contact.b.part < 0 ? a : std::min(a, model.parts()[at(contact.b.part)].part->size());
+  const double a = model.parts()[at(contact.a.part)].size;
+  return contact.b.part < 0 ? a : std::min(a, model.parts()[at(contact.b.part)].size);
 }
 
 ContactRules::ContactRules(const Model& model)

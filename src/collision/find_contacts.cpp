@@ -136,7 +136,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
   const std::size_t first = found.size();
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, max_gap, field))
     add(low);
-  if (has_fixed_shape(a)) keep_outline(found, first, model_->parts()[at(a)].part->size());
+  if (has_fixed_shape(a)) keep_outline(found, first, model_->parts()[at(a)].size);
 }
 
 /// Whether the contacts of a part follow from its support function at the present parameters.
@@ -219,7 +219,7 @@ void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* mar
     s.wide_reach = reach[0];
     s.wide_margin = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < smooth_parts_.size(); ++k) {
-      const double spare = kPairMargin * model_->parts()[at(smooth_parts_[k])].part->size();
+      const double spare = kPairMargin * model_->parts()[at(smooth_parts_[k])].size;
       const Vec3<double> margin = reach.array() + spare;
       s.wide_margin = std::min(s.wide_margin, spare);
       s.wide.emplace_back(s.boxes[k].min() - margin, s.boxes[k].max() + margin);
@@ -243,6 +243,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
   Scratch& s = *scratch_;
   place_planes(t);
   std::vector<Contact> found;
+  found.reserve(s.last_count);
   for (const int i : smooth_parts_) {
     place(state, t, i);
     if (marked != nullptr && !(*marked)[at(i)]) continue;
@@ -255,13 +256,15 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
     for (std::size_t k = 0; k < obstacles_->size(); ++k)
       if (on_obstacles_[at(i) * obstacles_->size() + k].touch) find_on_obstacle(i, k, t, max_gap, found);
   }
-  if (!has_pairs_) return found;
-  find_near_pairs(max_gap, marked);
-  for (const auto& [i, j] : s.pairs) {
-    if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
-    const ContactRule rule = rule_of(i, j);
-    if (rule.touch) find_on_pair(i, j, rule, max_gap, found);
+  if (has_pairs_) {
+    find_near_pairs(max_gap, marked);
+    for (const auto& [i, j] : s.pairs) {
+      if (model_->is_motionless(state, i) && model_->is_motionless(state, j)) continue;
+      const ContactRule rule = rule_of(i, j);
+      if (rule.touch) find_on_pair(i, j, rule, max_gap, found);
+    }
   }
+  s.last_count = found.size();
   return found;
 }
 
@@ -276,7 +279,7 @@ double ContactFinder::min_gap(const State& state, double t, const Contact& conta
   std::vector<Contact> found;
   place(state, t, contact.a.part);
   if (contact.obstacle >= 0) {
-    max_gap = std::min(max_gap, kMaxReportedGap * model_->parts()[at(contact.a.part)].part->size());
+    max_gap = std::min(max_gap, kMaxReportedGap * model_->parts()[at(contact.a.part)].size);
     find_on_obstacle(contact.a.part, at(contact.obstacle), t, max_gap, found);
   } else if (contact.b.part < 0) {
     place_planes(t);

@@ -200,8 +200,7 @@ void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, do
   const std::size_t first = found.size();
   for (const BoxTouch& touch : touches)
     found.push_back(contact_at(touch.x, touch.normal, touch.gap, a, b, rule));
-  keep_outline(found, first,
-               std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
+  keep_outline(found, first, std::min(model_->parts()[at(a)].size, model_->parts()[at(b)].size));
 }
 
 /// Appends the contacts of two convex parts that are not both ellipsoids. Returns whether the pair is such a
@@ -238,7 +237,7 @@ bool ContactFinder::find_between_features(int a, int b, const ContactRule& rule,
   const PartPatches *of_a = surfaces_[at(a)]->rest_patches(), *of_b = surfaces_[at(b)]->rest_patches();
   if (of_a == nullptr || of_b == nullptr) return false;
   const double thickness = std::min(surfaces_[at(a)]->thickness(), surfaces_[at(b)]->thickness()),
-               size_a = model_->parts()[at(a)].part->size(), size_b = model_->parts()[at(b)].part->size();
+               size_a = model_->parts()[at(a)].size, size_b = model_->parts()[at(b)].size;
   const RelativePose pose{other.R.transpose() * one.R, other.R.transpose() * (one.c - other.c)};
   std::vector<CommonNormal>& touches = scratch_->of_features;
   if (!touch_features(
@@ -299,7 +298,7 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   const bool at_one_point = scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes;
   if (at_one_point && ours.empty()) return;
   find_on_part(b, a, rule, max_gap, theirs);
-  const double size_a = model_->parts()[at(a)].part->size(), size_b = model_->parts()[at(b)].part->size(),
+  const double size_a = model_->parts()[at(a)].size, size_b = model_->parts()[at(b)].size,
                same = kMergeDistance * std::min(size_a, size_b),
                as_deep = kEqualDepth * std::min(size_a, size_b);
   // Of two equally deep points the one on the smaller part is kept, so that the lever arm of a rolling part

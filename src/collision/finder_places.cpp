@@ -19,7 +19,8 @@ void ContactFinder::place(const State& state, double t, int i) const {
   const PartModel& m = model_->parts()[at(i)];
   ParameterValues<double>& values = scratch_->values[at(i)];
   Placed& placed = scratch_->parts[at(i)];
-  if (!has_fixed_shape(i))
+  const bool is_fixed = has_fixed_shape(i);
+  if (!is_fixed)
     for (int k = 0; k < m.n_s; ++k) {
       const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
       const double value = state.q[m.q0 + 7 + k];
@@ -38,6 +39,8 @@ void ContactFinder::place(const State& state, double t, int i) const {
     placed.c_dot = frame.c_dot;
     placed.omega = frame.omega;
   }
+  if (is_fixed && placed.shape_known) return;
+  placed.shape_known = true;
   placed.axes = surfaces_[at(i)]->semi_axes(values);
   placed.half = surfaces_[at(i)]->half_sizes(values);
   placed.reach = surfaces_[at(i)]->reach(values);
@@ -72,7 +75,7 @@ Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
     const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
     middle += placed.R * box.center();
     half = placed.R.cwiseAbs() * (0.5 * box.sizes());
-    half.array() += kBulge * model_->parts()[at(i)].part->size();
+    half.array() += kBulge * model_->parts()[at(i)].size;
   }
   return {middle - half, middle + half};
 }

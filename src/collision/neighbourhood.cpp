@@ -94,7 +94,7 @@ std::pair<double, double> ContactFinder::relative_speed(const State& state, int 
 /// the box of the other; 0 if they overlap. ball, box: the numbers of these parts.
 double ContactFinder::clearance(int ball, int box) const {
   const Placed &a = scratch_->parts[at(ball)], &b = scratch_->parts[at(box)];
-  const double bulge = kBulge * model_->parts()[at(box)].part->size();
+  const double bulge = kBulge * model_->parts()[at(box)].size;
   return std::max(0.0, body_box(box).exteriorDistance(b.R.transpose() * (a.c - b.c)) - a.reach - bulge);
 }
 

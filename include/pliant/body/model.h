@@ -37,6 +37,7 @@ struct PartModel {
   // Fields that every stage reads come first, close together in memory.
   const Part* part;
   int q0, v0;       ///< first entries in q and v; -1 for a part that is fixed or has a prescribed motion
+  double size;      ///< Part::size(): largest half extent at rest, m
   int n_s;          ///< number of dynamic global parameters
   int island = -1;  ///< number of its island; -1: no joints or no coordinates
   int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none

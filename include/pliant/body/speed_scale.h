@@ -12,7 +12,7 @@ namespace pliant {
 /// c_dot and for rates of lengths, the size of the part for omega and for rates of other parameters.
 inline double lever(const PartModel& m, int k) {
   if (k < 3) return 1;
-  if (k < 6 || m.part->parameters().moving(k - 6).spec->quantity != Quantity::length) return m.part->size();
+  if (k < 6 || m.part->parameters().moving(k - 6).spec->quantity != Quantity::length) return m.size;
   return 1;
 }
 
@@ -22,7 +22,7 @@ inline double lever(const PartModel& m, int k) {
 inline VecX<double> local_levers(const PartModel& m) {
   if (m.local->oscillators() != nullptr)
     return VecX<double>::Constant(m.n_d(), 1 / std::sqrt(m.part->total_mass()));
-  VecX<double> levers = VecX<double>::Constant(m.n_d(), m.part->size());
+  VecX<double> levers = VecX<double>::Constant(m.n_d(), m.size);
   levers.head(3 * m.local->mesh().X.rows()).setOnes();
   return levers;
 }
@@ -31,7 +31,7 @@ inline VecX<double> local_levers(const PartModel& m) {
 template <class V>
 double largest_speed(const PartModel& m, const V& v) {
   double largest = std::max(v.template head<3>().template lpNorm<Eigen::Infinity>(),
-                            m.part->size() * v.template segment<3>(3).template lpNorm<Eigen::Infinity>());
+                            m.size * v.template segment<3>(3).template lpNorm<Eigen::Infinity>());
   for (int k = 6; k < 6 + m.n_s; ++k) largest = std::max(largest, lever(m, k) * std::abs(v[k]));
   return largest;
 }
@@ -42,7 +42,7 @@ template <class V>
 double shape_speed(const PartModel& m, const V& v, double reach) {
   double speed = 0;
   for (int k = 6; k < 6 + m.n_s; ++k) speed += lever(m, k) * std::abs(v[k]);
-  return m.n_s == 0 ? 0 : reach / m.part->size() * speed;
+  return m.n_s == 0 ? 0 : reach / m.size * speed;
 }
 
 /// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, normally 1/s. It

@@ -54,6 +54,10 @@ struct PartWorkspace {
       if (rigid != nullptr) return rigid->rigid_mass->inertia.M;
     return inertia.M;
   }
+  /// Returns M^-1 of a rigid part, with zeros for velocities without inertia; nullptr for other parts.
+  const Eigen::Matrix<double, 6, 6>* rigid_mass_inverse() const {
+    return rigid == nullptr ? nullptr : &rigid->rigid_mass->inverse;
+  }
   /// Replaces x, n_x forces, by M^-1 x, with zeros for velocities without inertia.
   template <class Vector>
   void solve_mass(Vector&& x) const {
@@ -62,8 +66,8 @@ struct PartWorkspace {
         x = (local->A * x).eval();
         return;
       }
-      if (rigid != nullptr) {
-        x = (rigid->rigid_mass->inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
+      if (const auto* inverse = rigid_mass_inverse()) {
+        x = (*inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
         return;
       }
     }

@@ -35,21 +35,19 @@ inline Mat3<double> axes(const Contact& contact) {
 /// size of the part.
 inline constexpr double kAtLimit = 1e-6;
 
-/// Returns the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad is
-/// equivalent to a displacement by four sizes of the part, twice its extent. With a smaller weight of
+/// Sets `all` to the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad
+/// is equivalent to a displacement by four sizes of the part, twice its extent. With a smaller weight of
 /// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
-inline VecX<double> levers(const Model& model, const Movers& movers, const Mover& mover) {
+inline void set_levers(const Model& model, const Movers& movers, const Mover& mover, VecX<double>& all) {
   constexpr double of_displacement = 0.25;
-  VecX<double> all = VecX<double>::Constant(mover.size, of_displacement);
-  const std::vector<int> alone{mover.part};
-  for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
+  all.setConstant(mover.size, of_displacement);
+  for (const int part : mover.parts()) {
     const PartModel& m = model.parts()[at(part)];
     const int first = Movers::first_in(mover, part);
     for (int k = 3; k < 6 + m.n_s; ++k) all[first + k] = lever(m, k);
     if (const int n = movers.n_local(part); n > 0)
       all.segment(movers.first_local(mover, part), n) = of_displacement * local_levers(m).head(n);
   }
-  return all;
 }
 
 }  // namespace contact_problem
@@ -58,8 +56,7 @@ PLIANT_INLINE int near_limit(const PartModel& m, int k, const State& state) {
   const int mode = state.at_limit[at(m.limit0 + k)];
   if (mode != 0) return mode;
   const Range& limits = m.limits[at(k)];
-  const double distance = contact_problem::kAtLimit * m.part->size() / lever(m, 6 + k),
-               value = state.q[m.q0 + 7 + k];
+  const double distance = contact_problem::kAtLimit * m.size / lever(m, 6 + k), value = state.q[m.q0 + 7 + k];
   if (value - limits.min <= distance) return -1;
   return limits.max - value <= distance ? 1 : 0;
 }
@@ -67,10 +64,14 @@ PLIANT_INLINE int near_limit(const PartModel& m, int k, const State& state) {
 PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                                              const std::vector<Contact>& contacts, const State* start)
     : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model, work) {
+  axes_.reserve(contacts.size());
+  system_.reserve(contacts.size());
   for (const Contact& contact : contacts) {
+    axes_.push_back(contact_problem::axes(contact));
+    const Mat3<double> to_contact = axes_.back().transpose();
     system_.add_contact(contact.friction);
-    add_side(contact.a, contact, 1);
-    if (contact.b.part >= 0) add_side(contact.b, contact, -1);
+    add_side(contact.a, contact.x, to_contact);
+    if (contact.b.part >= 0) add_side(contact.b, contact.x, -to_contact);
     complete();
   }
   add_limits(start);
@@ -92,10 +93,12 @@ PLIANT_INLINE void ContactProblem::add_predicted() {
   }
 }
 
-PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Contact& contact, double sign) {
+/// Adds a side of the present contact. x: the contact point, m, world. to_contact: from the world to the axes
+/// of the contact, negative for side b.
+PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Vec3<double>& x,
+                                            const Mat3<double>& to_contact) {
   const PartModel& m = model_.parts()[at(side.part)];
   if (m.q0 < 0) return;
-  const Mat3<double> to_contact = sign * contact_problem::axes(contact).transpose();
   const PartWorkspace<double>& w = work_.parts[at(side.part)];
   if (side.at_nodes() && moves_by_nodes(m, w)) {
     for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
@@ -109,7 +112,7 @@ PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Conta
   Side s = make_side(side.part);
   const Mat3<double> D = to_contact * w.R;
   s.J.leftCols<3>() = D;
-  s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (contact.x - w.c));
+  s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (x - w.c));
   if (m.n_s > 0) {
     std::vector<Material<double>> points{side.material};
     for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k) {
@@ -153,12 +156,9 @@ PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3
 /// motion: the parameter must not pass the limit. Parameters without inertia, and those of parts that move by
 /// nodes, get no row.
 PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
-  const std::vector<Mover> movers = movers_.all();
-  for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
-    const Mover& mover = movers[at(i)];
+  for (const Mover& mover : movers_.all()) {  // the new rows add no movers
     if (mover.node >= 0) continue;
-    const std::vector<int> alone{mover.part};
-    for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
+    for (const int part : mover.parts()) {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         int mode = state_.at_limit[at(m.limit0 + k)];
@@ -179,8 +179,7 @@ PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
 /// Adds a one-sided row for each taut string at the movers: the string must not become longer. Strings of
 /// parts that deform locally get no row; the projection of joints treats them.
 PLIANT_INLINE void ContactProblem::add_strings() {
-  const std::vector<Mover> movers = movers_.all();
-  for (const Mover& mover : movers) {
+  for (const Mover& mover : movers_.all()) {  // the new rows add no movers
     if (mover.island == nullptr) continue;
     for (const int j : mover.island->strings) {
       const JointModel& string = model_.joints()[at(j)];
@@ -224,8 +223,12 @@ PLIANT_INLINE void ContactProblem::complete() {
       if (sides_[k].mover == number) add_response(mover, sides_[k], rows, Y);
   }
   const double free_response = system_.effect(contact, contact)(0, 0);
-  if (jointed) add_joint_responses(contact);
-  if (!(system_.effect(contact, contact)(0, 0) > contact_problem::kFixedShare * free_response)) {
+  double response = free_response;
+  if (jointed) {
+    add_joint_responses(contact);
+    response = system_.effect(contact, contact)(0, 0);
+  }
+  if (!(response > contact_problem::kFixedShare * free_response)) {
     system_.drop_pushes();
     while (!joints_.empty() && joints_.back().contact == contact) joints_.pop_back();
   }
@@ -235,7 +238,7 @@ PLIANT_INLINE void ContactProblem::complete() {
 /// Adds to Y the change of the velocities of a mover by unit impulses at a side, without the reactions of
 /// joints. Y: one column for each row of the contact. rows: number of these rows.
 PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& side, int rows,
-                                                CoulombSystem::Push& Y) const {
+                                                CoulombSystem::Push& Y) {
   if (mover.node >= 0) {
     Y += side.J.transpose() / model_.parts()[at(mover.part)].local->mesh().mass[mover.node];
     return;
@@ -259,11 +262,15 @@ PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& 
     }
     return;
   }
+  if (const Eigen::Matrix<double, 6, 6>* inverse = work_.parts[at(side.part)].rigid_mass_inverse()) {
+    Y.middleRows<6>(side.first) += *inverse * side.J.leftCols<6>().transpose();
+    return;
+  }
   for (int r = 0; r < rows; ++r) {
-    VecX<double> force = VecX<double>::Zero(m.n_x());  // no impulse at attachment points of joints
-    force.head(side.J.cols()) = side.J.row(r).transpose();
-    work_.parts[at(side.part)].solve_mass(force);
-    Y.col(r).segment(side.first, m.n_x()) += force;
+    force_.setZero(m.n_x());  // no impulse at attachment points of joints
+    force_.head(side.J.cols()) = side.J.row(r).transpose();
+    work_.parts[at(side.part)].solve_mass(force_);
+    Y.col(r).segment(side.first, m.n_x()) += force_;
   }
 }
 
@@ -301,8 +308,9 @@ PLIANT_INLINE void ContactProblem::add_joint_responses(int contact) {
 PLIANT_INLINE std::vector<Vec3<double>> ContactProblem::velocities(const State& state) const {
   const VecX<double> x = movers_.velocities(state, work_);
   std::vector<Vec3<double>> all;
+  all.reserve(contacts_.size());
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k)
-    all.push_back(contact_problem::axes(contacts_[at(k)]) * (system_.velocity(k, x) - system_.constant(k)) -
+    all.push_back(axes_[at(k)] * (system_.velocity(k, x) - system_.constant(k)) -
                   contacts_[at(k)].prescribed_velocity);
   return all;
 }
@@ -311,7 +319,7 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
   const int n = static_cast<int>(contacts_.size());
   for (int k = 0; k < n; ++k) {
     const Contact& contact = contacts_[at(k)];
-    system_.constant(k) = -contact_problem::axes(contact).transpose() * contact.prescribed_velocity;
+    system_.constant(k) = -axes_[at(k)].transpose() * contact.prescribed_velocity;
     system_.constant(k)[0] -= contact.rebound;
   }
   for (const String& string : strings_) {
@@ -325,10 +333,12 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
   const CoulombResult result = system_.solve(after_, {0, model_.body().contact.tolerance});
   ContactSolution solution{
       {}, {}, result.residual, result.worst_residual, result.worst_accepted, result.sweeps, result.fallbacks};
+  solution.impulse.reserve(contacts_.size());
+  solution.velocity.reserve(contacts_.size());
   for (int k = 0; k < system_.size(); ++k) {
     system_.add_change(k, k < n ? contacts_[at(k)].since : limit_time, shift_);
     if (k >= n) continue;
-    const Mat3<double> to_world = contact_problem::axes(contacts_[at(k)]);
+    const Mat3<double>& to_world = axes_[at(k)];
     Vec3<double> u = system_.velocity(k, after_);
     u[0] += contacts_[at(k)].rebound;
     solution.impulse.push_back(to_world * system_.impulse(k));
@@ -338,7 +348,7 @@ PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
 }
 
 PLIANT_INLINE void ContactProblem::warm_start_at(int contact, const Vec3<double>& impulse) {
-  system_.impulse(contact) = contact_problem::axes(contacts_[at(contact)]).transpose() * impulse;
+  system_.impulse(contact) = axes_[at(contact)].transpose() * impulse;
 }
 
 PLIANT_INLINE void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
@@ -354,13 +364,14 @@ PLIANT_INLINE void ContactProblem::add_joint_impulses(VecX<double>& rows) const 
 }
 
 PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_time) {
+  VecX<double> change, levers;
   for (const Mover& mover : movers_.all()) {
     auto displacement = shift_.segment(mover.first, mover.size);
-    VecX<double> change = after(mover) - before(mover);
+    change = after(mover) - before(mover);
     if (has_predicted()) change += predicted_.segment(mover.first, mover.size);
     const bool too_far = [&] {
       if (mover.node >= 0) return displacement.norm() > max_time * change.norm();
-      const VecX<double> levers = contact_problem::levers(model_, movers_, mover);
+      contact_problem::set_levers(model_, movers_, mover, levers);
       return levers.cwiseProduct(displacement).norm() > max_time * levers.cwiseProduct(change).norm();
     }();
     if (too_far) displacement = limit_time * change;
@@ -369,8 +380,8 @@ PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_ti
 }
 
 PLIANT_INLINE double ContactProblem::own_speed(int contact) const {
-  const Contact& c = contacts_[at(contact)];
-  return (system_.effect(contact, contact) * contact_problem::axes(c).transpose() * c.predicted)[0];
+  return (system_.effect(contact, contact) * axes_[at(contact)].transpose() *
+          contacts_[at(contact)].predicted)[0];
 }
 
 PLIANT_INLINE std::vector<double> ContactProblem::close_gaps() {

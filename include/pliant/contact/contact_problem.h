@@ -110,24 +110,26 @@ class ContactProblem {
   };
   Side make_side(int part);
   void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
-  void add_side(const ContactSide& side, const Contact& contact, double sign);
+  void add_side(const ContactSide& side, const Vec3<double>& x, const Mat3<double>& to_contact);
   void add_limits(const State* start);
   void add_strings();
   void complete();
   void add_predicted();
-  void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;
+  void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y);
   void add_joint_responses(int contact);
 
   const Model& model_;
   const State& state_;
   Workspace<double>& work_;
   const std::vector<Contact>& contacts_;
+  std::vector<Mat3<double>> axes_;  // normal and two tangents of each contact as columns, unit vectors, world
   Movers movers_;
   CoulombSystem system_;  // the contacts first, then limits and strings
   std::vector<Side> sides_;
   std::vector<JointResponse> joints_;
   std::vector<String> strings_;
-  std::vector<PointJet<double>> jets_;
+  std::vector<PointJet<double>> jets_;  // buffer of add_side()
+  VecX<double> force_;                  // buffer of add_response()
   VecX<double> before_, after_, shift_;
   VecX<double> predicted_;  // changes of velocity by the predicted impulses; empty: there are none
 };

@@ -231,10 +231,10 @@ PLIANT_INLINE void ContactResolution::end_step(double h, State& state) const {
 }
 
 PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedMotion& motion,
-                                              std::vector<Contact> contacts) {
+                                              const std::vector<Contact>& contacts) {
   fully_separated_.clear();
   if (contacts.empty()) return;
-  resolve_once(step, motion, std::move(contacts), motion.h > 0);
+  resolve_once(step, motion, contacts, motion.h > 0);
 }
 
 /// Adds to the travel of each part its travel towards the bodies that it meets in a motion of h seconds.
@@ -305,7 +305,7 @@ PLIANT_INLINE void ContactResolution::append_to_record(const std::vector<Contact
 /// Resolves contacts once: applies the impulses, the displacements that they cause and their works. Then
 /// separates overlaps, unless motion.h is zero or motion.separates is false. warm: see solve().
 PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
-                                                   std::vector<Contact> contacts, bool warm) {
+                                                   const std::vector<Contact>& contacts, bool warm) {
   const State& before = motion.before;
   const double h = motion.h, t = step.t;
   State& state = step.state;
@@ -372,18 +372,22 @@ PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vect
   const double t = step.t;
   for (int link = 0; link < contact_resolution::kMaxChainLinks && !resolved.empty(); ++link) {
     const Pairs known(resolved);
-    std::vector<Contact> contacts = resting_.near(state, t);
+    auto is_impact = [&](const Contact& contact) {
+      return contact.gap < -resting_.gap(contact) &&
+             finder_.velocity(state, contact).dot(contact.normal) < -min_impact_speed &&
+             !known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; });
+    };
+    const std::vector<Contact>& near = resting_.near(state, t);
+    if (std::none_of(near.begin(), near.end(), is_impact)) return;
+    std::vector<Contact> contacts = near;
     double earliest = 0;  // time since the first of these impacts, s
     for (Contact& contact : contacts) {
+      if (!is_impact(contact)) continue;
       const double u = finder_.velocity(state, contact).dot(contact.normal);
-      if (!(contact.gap < -resting_.gap(contact) && u < -min_impact_speed) ||
-          known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
-        continue;
       contact.since = std::min(step.h, contact.gap / u);
       if (-contact.restitution * u > min_impact_speed) contact.rebound = -contact.restitution * u;
       earliest = std::max(earliest, contact.since);
     }
-    if (earliest == 0) return;
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
                                   [&](const Contact& c) { return c.gap > resting_.gap(c); }),
                    contacts.end());
@@ -409,7 +413,7 @@ PLIANT_INLINE void ContactResolution::add_ejections(const State& state) {
     const PartModel& m = dynamics_.model().parts()[i];
     if (m.q0 < 0) continue;
     const auto change = state.q.segment(m.q0, m.n_q()) - q_before_ejection_.segment(m.q0, m.n_q());
-    const double size = m.part->size();
+    const double size = m.size;
     travel_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * size;
     for (int k = 0; k < m.n_s; ++k) travel_[i] += lever(m, 6 + k) * std::abs(change[7 + k]);
     if (m.n_d() > 0)

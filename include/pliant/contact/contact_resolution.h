@@ -64,7 +64,7 @@ class ContactResolution {
   /// Applies the impulses at the contacts at step.t, the end of a motion, and the displacements that these
   /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero or
   /// motion.separates is false.
-  void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
+  void resolve(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
   /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the
   /// fourth is needed, StepCounters::contact_cutoffs grows by one. Approaches and rebounds that are slower
@@ -92,7 +92,7 @@ class ContactResolution {
 
   double departure_from_tangent(const ContactSide& side, const Vec3<double>& x, const State& state,
                                 double h) const;
-  void resolve_once(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts,
+  void resolve_once(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts,
                     bool warm);
   void measure_travel(const State& state, double h, const std::vector<Contact>& contacts);
   ContactSolution solve(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts,
@@ -110,6 +110,7 @@ class ContactResolution {
   double allowed_overlap(const Contact& contact) const;
   void record_overlaps(const std::vector<Contact>& contacts, double t);
   void keep_affected(std::vector<Contact>& contacts, const Workspace<double>& work) const;
+  bool is_separated(const std::vector<Contact>& contacts) const;
   std::vector<Contact> contacts_to_separate(const StepContext& step);
   void separate(StepContext& step, const std::vector<Contact>& contacts);
   void separate_overlaps(StepContext& step);

@@ -58,7 +58,7 @@ PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) 
   if (is_at_nodes(contact)) return contact_separation::kMeshOverlap * resting_.tight_gap(contact);
   double size = 0;
   for (const ContactSide* side : {&contact.a, &contact.b})
-    if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
+    if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].size);
   const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
   const double tolerance = dynamics_.model().body().contact.tolerance.value_or(0),
                loose = std::min(contact_separation::kOverlapPerTolerance * tolerance *
@@ -114,6 +114,13 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
       contacts.end());
 }
 
+/// Returns whether no contact is deeper than its allowed overlap.
+PLIANT_INLINE bool ContactResolution::is_separated(const std::vector<Contact>& contacts) const {
+  return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.gap >= 0 || contact.gap >= -std::min(allowed_overlap(contact), resting_.gap());
+  });
+}
+
 /// Returns the contacts near a state, with those of bodies that a separation in a step may push into others.
 PLIANT_INLINE std::vector<Contact> ContactResolution::contacts_to_separate(const StepContext& step) {
   const State& state = step.state;
@@ -156,6 +163,8 @@ PLIANT_INLINE void ContactResolution::separate(StepContext& step, const std::vec
 /// that this separation pushes into others are separated completely. Records the overlaps that remain.
 PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
   for (int i = 0;; ++i) {
+    const std::vector<Contact>& near = resting_.near(step.state, step.t);
+    if (meshes_.empty() && is_separated(near)) return record_overlaps(near, step.t);
     std::vector<Contact> found = contacts_to_separate(step);
     record_overlaps(found, step.t);
     std::vector<PairKey> too_deep;

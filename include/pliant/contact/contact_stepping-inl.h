@@ -304,7 +304,7 @@ PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) cons
   for (const PartModel& m : dynamics_.model().parts()) {
     if (m.q0 < 0) continue;
     const double speed = state.v.segment<3>(m.v0).norm(),
-                 rate = speed / m.part->size() + state.v.segment<3>(m.v0 + 3).norm();
+                 rate = speed / m.size + state.v.segment<3>(m.v0 + 3).norm();
     if (rate <= fastest) continue;
     fastest = rate;
     message.str("");
@@ -464,7 +464,7 @@ PLIANT_INLINE void ContactStepping::resolve_resting(const Motion& motion, StepCo
   meshes_.find(step.state, step.t, contacts);
   time_impacts(finder_, free, step.state, contacts);
   clock.lap(times_.finding);
-  resolution_.resolve(step, resolved_motion(free), std::move(contacts));
+  resolution_.resolve(step, resolved_motion(free), contacts);
   clock.lap(times_.resolution);
 }
 
@@ -495,7 +495,7 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
     }
   }
   progress.clock.lap(times_.finding);
-  resolution_.resolve(step, {state, 0, 0}, std::move(contacts));
+  resolution_.resolve(step, {state, 0, 0}, contacts);
   progress.clock.lap(times_.resolution);
 }
 
@@ -521,7 +521,7 @@ PLIANT_INLINE void ContactStepping::resolve_sequence(Motion& motion, StepContext
       since_first = std::max(since_first, contact.since);
   }
   if (since_first == 0 || !any_rebound) return;
-  resolution_.resolve(step, resolved_motion(free, false), std::move(resting));
+  resolution_.resolve(step, resolved_motion(free, false), resting);
   for (Contact& contact : impacts) {
     contact.rebound = 0;
     if (rest.has(contact))

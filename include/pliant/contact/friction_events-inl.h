@@ -82,7 +82,7 @@ double locate_end(Interval interval, double target, double accuracy, F&& functio
 
 /// Returns the linear speed of a part plus its angular speed times its size, m/s.
 inline double speed(const PartModel& m, const VecX<double>& v) {
-  return v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm();
+  return v.segment<3>(m.v0).norm() + m.size * v.segment<3>(m.v0 + 3).norm();
 }
 
 /// Returns the largest entry of the accelerations of all parts, m/s^2.

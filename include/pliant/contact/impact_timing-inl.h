@@ -102,7 +102,7 @@ class ImpactGap {
     for (const Contact& contact : impacts) {
       size_ = std::min(size_, smaller_size(model, contact));
       for (const ContactSide* side : {&contact.a, &contact.b})
-        if (side->part >= 0) largest_ = std::max(largest_, model.parts()[at(side->part)].part->size());
+        if (side->part >= 0) largest_ = std::max(largest_, model.parts()[at(side->part)].size);
     }
   }
 

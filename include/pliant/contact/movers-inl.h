@@ -21,7 +21,8 @@ PLIANT_INLINE bool moves_by_nodes(const PartModel& m, const PartWorkspace<double
 }
 
 PLIANT_INLINE Movers::Movers(const Model& model, const Workspace<double>& work)
-    : model_(&model), part_movers_(model.parts().size(), -1), node_movers_(model.parts().size()) {
+    : model_(&model), part_movers_(model.parts().size(), -1) {
+  n_local_.reserve(model.parts().size());
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     n_local_.push_back(moves_locally(m, work.parts[i]) ? static_cast<int>(m.n_d()) : 0);
@@ -50,6 +51,7 @@ PLIANT_INLINE int Movers::mover_of_part(int part) {
 }
 
 PLIANT_INLINE int Movers::mover_of_node(int part, int node) {
+  node_movers_.resize(model_->parts().size());
   std::vector<int>& numbers = node_movers_[at(part)];
   if (numbers.empty()) numbers.resize(model_->parts()[at(part)].local->mesh().nodes.size(), -1);
   int& number = numbers[at(node)];

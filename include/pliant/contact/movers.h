@@ -17,6 +17,18 @@ struct Mover {
   int node = -1;                   ///< number of the node; -1: not a node
   const Island* island = nullptr;  ///< the island; nullptr: not an island
   int first = 0, size = 0;         ///< index and number of its velocities in the vector of all movers
+
+  /// A range of numbers of parts.
+  struct Parts {
+    const int *first, *last;
+    const int* begin() const { return first; }
+    const int* end() const { return last; }
+  };
+  /// Returns the parts of the mover. Valid as long as the mover and its island exist.
+  Parts parts() const {
+    if (island == nullptr) return {&part, &part + 1};
+    return {island->parts.data(), island->parts.data() + island->parts.size()};
+  }
 };
 
 /// Returns whether an impulse on a part moves all of its local coordinates.
@@ -54,9 +66,10 @@ class Movers {
   const Model* model_;
   std::vector<Mover> all_;
   int n_x_ = 0;
-  std::vector<int> n_local_;                   // of each part
-  std::vector<int> part_movers_;               // number of the mover of each part; -1: none yet
-  std::vector<std::vector<int>> node_movers_;  // number of the mover of each node of each part
+  std::vector<int> n_local_;      // of each part
+  std::vector<int> part_movers_;  // number of the mover of each part; -1: none yet
+  /// Number of the mover of each node of each part; empty if no node has a mover.
+  std::vector<std::vector<int>> node_movers_;
 };
 
 }  // namespace pliant

@@ -40,8 +40,7 @@ inline constexpr double kRepeatShare = 0.95;
 
 PLIANT_INLINE RestingContacts::RestingContacts(const Model& model, const ContactFinder& finder)
     : model_(model), finder_(finder) {
-  for (const PartModel& m : model.parts())
-    gap_ = std::max(gap_, resting_contacts::kRestingGap * m.part->size());
+  for (const PartModel& m : model.parts()) gap_ = std::max(gap_, resting_contacts::kRestingGap * m.size);
 }
 
 PLIANT_INLINE void RestingContacts::widen_gap(double extra) {
@@ -110,13 +109,12 @@ PLIANT_INLINE double RestingContacts::max_speed(const FreeMotion& motion, const 
 
 PLIANT_INLINE std::vector<Contact> RestingContacts::at_rest(const State& state, double t,
                                                             const FreeMotion& motion) {
-  std::vector<Contact> resting = near(state, t);
-  resting.erase(std::remove_if(resting.begin(), resting.end(),
-                               [&](const Contact& c) {
-                                 return !is_resting(c, c.gap, finder_.velocity(state, c).dot(c.normal),
-                                                    max_speed(motion, c));
-                               }),
-                resting.end());
+  const std::vector<Contact>& all = near(state, t);
+  std::vector<Contact> resting;
+  resting.reserve(all.size());
+  std::copy_if(all.begin(), all.end(), std::back_inserter(resting), [&](const Contact& c) {
+    return is_resting(c, c.gap, finder_.velocity(state, c).dot(c.normal), max_speed(motion, c));
+  });
   return resting;
 }
 
@@ -190,15 +188,11 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
   add_followed(resting, max_gap, found);
-  std::vector<Contact> contacts;
-  for (Contact& contact : found) {
-    if (rested(contact))
-      contact.since = motion.force_time();
-    else if (contact.gap > 0)
-      continue;
-    contacts.push_back(contact);
-  }
-  return contacts;
+  for (Contact& contact : found) contact.since = rested(contact) ? motion.force_time() : 0;
+  found.erase(
+      std::remove_if(found.begin(), found.end(), [](const Contact& c) { return c.since == 0 && c.gap > 0; }),
+      found.end());
+  return found;
 }
 
 }  // namespace pliant

@@ -275,7 +275,7 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());
-  const double size = m.part->size();
+  const double size = m.size;
   double speed = v.head<3>().norm() + size * v.segment<3>(3).norm() + shape_speed(m, v, size);
   if (m.local != nullptr)
     speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();

@@ -45,7 +45,7 @@ inline constexpr double kMaxDifference = 0.05;
 inline bool differ(const Model& model, const State& a, const State& b, const std::vector<int>& parts) {
   return std::any_of(parts.begin(), parts.end(), [&](int i) {
     const PartModel& m = model.parts()[at(i)];
-    return (a.q.segment<3>(m.q0) - b.q.segment<3>(m.q0)).norm() > kMaxDifference * m.part->size();
+    return (a.q.segment<3>(m.q0) - b.q.segment<3>(m.q0)).norm() > kMaxDifference * m.size;
   });
 }
 

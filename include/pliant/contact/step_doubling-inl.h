@@ -48,7 +48,7 @@ inline constexpr double kBriefStep = 2e-5;
 inline bool has_jump(const Model& model, const VecX<double>& dv, double max_speed) {
   return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
     return m.q0 >= 0 &&
-           std::max(dv.segment<3>(m.v0).norm(), m.part->size() * dv.segment<3>(m.v0 + 3).norm()) > max_speed;
+           std::max(dv.segment<3>(m.v0).norm(), m.size * dv.segment<3>(m.v0 + 3).norm()) > max_speed;
   });
 }
 

@@ -33,10 +33,21 @@ PLIANT_INLINE CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
       (W - W_n_ * Mat3<double>::Identity()).lpNorm<Eigen::Infinity>() <= detail::kIsotropicContact * W_n_;
   if (isotropic_) return;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes;
-  modes.computeDirect(Eigen::Matrix2d(W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_));
+  A_ = W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_;
+  modes.computeDirect(A_);
   stiffness_ = modes.eigenvalues();
   modes_ = modes.eigenvectors();
-  factor_.compute(W);
+}
+
+PLIANT_INLINE Vec3<double> CoulombLaw::stick(double p_frictionless, const Eigen::Vector2d& c) const {
+  // A p_t = -c, by L D L^T. The first pivot is the larger diagonal entry of A. If the second pivot is zero to
+  // rounding, its part of the impulse is zero.
+  const int i = A_(0, 0) < A_(1, 1) ? 1 : 0, j = 1 - i;
+  const double l = A_(j, i) / A_(i, i), pivot = A_(j, j) - l * A_(i, j);
+  Eigen::Vector2d p_t;
+  p_t[j] = pivot > std::numeric_limits<double>::epsilon() * A_(i, i) ? -(c[j] - l * c[i]) / pivot : 0;
+  p_t[i] = -c[i] / A_(i, i) - l * p_t[j];
+  return {p_frictionless - coupling_.dot(p_t) / W_n_, p_t[0], p_t[1]};
 }
 
 PLIANT_INLINE Vec3<double> CoulombLaw::impulse(const Vec3<double>& b) const {
@@ -49,15 +60,15 @@ PLIANT_INLINE Vec3<double> CoulombLaw::impulse(const Vec3<double>& b) const {
     const double share = size > limit ? limit / size : 1;
     return {p_frictionless, share * stop[0], share * stop[1]};
   }
-  const Vec3<double> stick = -factor_.solve(b);
-  if (stick[0] > 0 && stick.tail<2>().norm() <= mu_ * stick[0]) return stick;
-  return slide(b, p_frictionless);
+  const Eigen::Vector2d c = b.tail<2>() + coupling_ * p_frictionless;
+  const Vec3<double> p = stick(p_frictionless, c);
+  const bool sticks = p[0] > 0 && p.tail<2>().norm() <= mu_ * p[0];
+  return sticks ? p : slide(p_frictionless, c);
 }
 
-PLIANT_INLINE Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_frictionless) const {
-  // Sliding: u_t = -s p_t with s > 0, and u_n = 0. Then (A + s) p_t = -c, where A is the Schur complement of
-  // the normal and c = b_t + W_tn p_frictionless.
-  const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_frictionless);
+PLIANT_INLINE Vec3<double> CoulombLaw::slide(double p_frictionless, const Eigen::Vector2d& c) const {
+  // Sliding: u_t = -s p_t with s > 0, and u_n = 0. Then (A + s) p_t = -c.
+  const Eigen::Array2d along = modes_.transpose() * c;
   const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
   Eigen::Array2d t;  // p_t along the modes
   double p_n = 0;

@@ -2,8 +2,6 @@
 //   0 <= p_n  _|_  u_n >= 0,   |p_t| <= mu p_n;   if the contact slides, |p_t| = mu p_n and p_t opposes u_t.
 #pragma once
 
-#include <Eigen/Cholesky>
-
 #include <pliant/math/types.h>
 
 namespace pliant {
@@ -20,17 +18,20 @@ class CoulombLaw {
   Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction. If s
-  /// exceeds the range of a double, the result is p_frictionless along the normal and no tangential impulse.
-  Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
+  /// Returns the impulse of a sticking contact. p_frictionless: the normal impulse without friction. c: the
+  /// tangential velocity with this impulse.
+  Vec3<double> stick(double p_frictionless, const Eigen::Vector2d& c) const;
+  /// Returns the impulse of a sliding contact, with the same arguments. If s exceeds the range of a double,
+  /// the result is p_frictionless along the normal and no tangential impulse.
+  Vec3<double> slide(double p_frictionless, const Eigen::Vector2d& c) const;
 
   double mu_ = 0, W_n_ = 1;
   bool isotropic_ = false;  ///< whether W is a multiple of the identity, for example between two point masses
   Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< entries of W between the tangents and the normal
-  // Eigenvalues and eigenvectors of A = W_tt - W_tn W_nt / W_nn, the Schur complement of the normal.
+  /// A = W_tt - W_tn W_nt / W_nn, the Schur complement of the normal, its eigenvalues and its eigenvectors.
+  Eigen::Matrix2d A_ = Eigen::Matrix2d::Identity();
   Eigen::Array2d stiffness_ = Eigen::Array2d::Ones();
   Eigen::Matrix2d modes_ = Eigen::Matrix2d::Identity();
-  Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< factor of W
 };
 
 /// Returns the impulse of one contact for W (3 x 3), the velocity b without impulse and the coefficient of

@@ -76,9 +76,11 @@ PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number,
       size_(system.clusters_[at(number) + 1] - system.clusters_[at(number)]),
       tolerance_(tolerance),
       scratch_(scratch) {
-  for (int i = 0; i < size_; ++i)
+  for (int i = 0; i < size_; ++i) {
+    has_limits_ = has_limits_ || contact(i).is_limit;
     for (int s = contact(i).first_side; s < contact(i).last_side; ++s)
       has_point_masses_ = has_point_masses_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
+  }
 }
 
 /// Computes scale_, approach_, rounding_, exact_ and acceptable_. The present velocities must be those
@@ -137,17 +139,7 @@ PLIANT_INLINE Vec3<double> CoulombCluster::law_impulse(int i, const Vec3<double>
 /// Adds dp to the impulse of contact i and updates the velocities of the movers.
 PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   p(i) += dp;
-  for (int r = contact(i).first_push; r < contact(i).last_push; ++r) {
-    const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
-    const double* Y = system_.numbers_.data() + term.numbers;
-    if (term.size == 3)
-      system_.x_.segment<3>(term.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * dp;
-    else if (term.size == 6)
-      system_.x_.segment<6>(term.first).noalias() += Eigen::Map<const Eigen::Matrix<double, 6, 3>>(Y) * dp;
-    else
-      system_.x_.segment(term.first, term.size).noalias() +=
-          Eigen::Map<const MatX<double>>(Y, term.size, 3) * dp;
-  }
+  system_.add_change_to(contacts_[i], dp, system_.used_pushes_, system_.x_);
 }
 
 /// Returns exact_ (to_rounding: rounding_), or the rounding error of the present impulses as a velocity if
@@ -333,7 +325,7 @@ PLIANT_INLINE void CoulombCluster::record(double residual, CoulombResult& result
   result.residual = std::max(result.residual, residual);
   const double share = tolerance_.share.value_or(detail::kReportedShare),
                accepted = std::max(exact_level(), share * approach_);
-  const double reported = this->residual(share, accepted);
+  const double reported = has_limits_ ? this->residual(share, accepted) : residual;
   if (!(reported * result.worst_accepted >= result.worst_residual * accepted) || !(reported > 0)) return;
   result.worst_residual = reported;
   result.worst_accepted = accepted;

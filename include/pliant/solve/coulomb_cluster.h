@@ -110,6 +110,7 @@ class CoulombCluster {
   CoulombTolerance tolerance_;
   CoulombScratch& scratch_;
   bool has_point_masses_ = false;  // whether the cluster contains point masses (CoulombSystem::add_mover)
+  bool has_limits_ = false;        // whether the cluster contains limits of parameters
   double scale_ = 0;               // the largest contact velocity without impulses
   double approach_ = 0;            // the approach speed (CoulombTolerance)
   double rounding_ = 0;    // residuals up to this velocity are rounding, or CoulombTolerance::velocity

@@ -20,6 +20,15 @@ inline constexpr double kContactRegularisation = 1e-12;
 PLIANT_INLINE CoulombSystem::CoulombSystem() : scratch_(std::make_unique<CoulombScratch>()) {}
 PLIANT_INLINE CoulombSystem::~CoulombSystem() = default;
 
+PLIANT_INLINE void CoulombSystem::reserve(std::size_t contacts) {
+  constexpr std::size_t kSides = 2, kNumbers = 3 * 6;  // of a contact of two bodies; of a side or push
+  contacts_.reserve(contacts);
+  p_.reserve(contacts);
+  sides_.reserve(kSides * contacts);
+  pushes_.reserve(kSides * contacts);
+  numbers_.reserve(2 * kSides * kNumbers * contacts);
+}
+
 PLIANT_INLINE int CoulombSystem::add_mover(int size) {
   movers_.push_back(movers_.back() + size);
   return static_cast<int>(movers_.size()) - 2;
@@ -81,9 +90,14 @@ PLIANT_INLINE Mat3<double> CoulombSystem::effect(int i, int j) const {
     for (int r = contacts_[at(j)].first_push; r < contacts_[at(j)].last_push; ++r) {
       const Term &side = sides_[at(s)], &push = pushes_[at(r)];
       if (side.first < push.first || side.first >= push.first + push.size) continue;
-      A.noalias() += Eigen::Map<const Eigen::Matrix3Xd>(numbers_.data() + side.numbers, 3, side.size) *
-                     Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3)
-                         .middleRows(side.first - push.first, side.size);
+      const double *J = numbers_.data() + side.numbers, *Y = numbers_.data() + push.numbers;
+      if (side.size == 6 && push.size == 6)
+        A += Eigen::Map<const Eigen::Matrix<double, 3, 6>>(J).lazyProduct(
+            Eigen::Map<const Eigen::Matrix<double, 6, 3>>(Y));
+      else
+        A.noalias() +=
+            Eigen::Map<const Eigen::Matrix3Xd>(J, 3, side.size) *
+            Eigen::Map<const MatX<double>>(Y, push.size, 3).middleRows(side.first - push.first, side.size);
     }
   return A;
 }
@@ -110,16 +124,21 @@ PLIANT_INLINE Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<T
 }
 
 PLIANT_INLINE void CoulombSystem::add_change(int k, double factor, VecX<double>& x) const {
-  add_change_to(k, factor, pushes_, x);
+  add_change_to(k, factor * p_[at(k)], pushes_, x);
 }
 
-PLIANT_INLINE void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& terms,
+/// Computes x += Y_k p. terms: pushes_, or used_pushes_ if x has the used velocities only.
+PLIANT_INLINE void CoulombSystem::add_change_to(int k, const Vec3<double>& p, const std::vector<Term>& terms,
                                                 VecX<double>& x) const {
-  const Vec3<double> p = factor * p_[at(k)];
   for (int r = contacts_[at(k)].first_push; r < contacts_[at(k)].last_push; ++r) {
     const Term& push = terms[at(r)];
-    x.segment(push.first, push.size).noalias() +=
-        Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3) * p;
+    const double* Y = numbers_.data() + push.numbers;
+    if (push.size == 3)
+      x.segment<3>(push.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * p;
+    else if (push.size == 6)
+      x.segment<6>(push.first).noalias() += Eigen::Map<const Eigen::Matrix<double, 6, 3>>(Y) * p;
+    else
+      x.segment(push.first, push.size).noalias() += Eigen::Map<const MatX<double>>(Y, push.size, 3) * p;
   }
 }
 
@@ -208,7 +227,7 @@ PLIANT_INLINE CoulombResult CoulombSystem::solve(VecX<double>& x, const CoulombT
   x_ = x0_;
   for (int k = 0; k < size(); ++k) {
     if (pushes(k) == 0) p_[at(k)].setZero();
-    add_change_to(k, 1, used_pushes_, x_);
+    add_change_to(k, p_[at(k)], used_pushes_, x_);
     if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x)[0]);
   }
   for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)

@@ -52,6 +52,8 @@ class CoulombSystem {
   using Side = Eigen::Map<Eigen::Matrix3Xd>;
   using Push = Eigen::Map<MatX<double>>;
 
+  /// Allocates storage for this number of contacts of rigid bodies.
+  void reserve(std::size_t contacts);
   /// Adds a mover with `size` velocities and returns its number. A mover of size 3 is a point mass.
   int add_mover(int size);
   /// Adds a contact with coefficient of friction mu. The contact has three rows: the normal and two tangents.
@@ -132,7 +134,7 @@ class CoulombSystem {
   void select_used();
   void find_clusters();
   Vec3<double> velocity_at(int k, const std::vector<Term>& terms, const VecX<double>& x) const;
-  void add_change_to(int k, double factor, const std::vector<Term>& terms, VecX<double>& x) const;
+  void add_change_to(int k, const Vec3<double>& p, const std::vector<Term>& terms, VecX<double>& x) const;
 
   std::vector<int> movers_{0};  // index in x of the first velocity of each mover, and n_x()
   std::vector<Contact> contacts_;
