@@ -15,7 +15,8 @@
 namespace pliant_cli {
 namespace {
 
-/// Ends the program with a message and kResources. Calls only functions that a signal handler may call.
+/// Prints a message and ends the program with kResources, or with kFileSystem if the message cannot be
+/// written. Calls only functions that a signal handler may call.
 extern "C" void on_graphics_crash(int number) {
   const char segmentation[] = "pliant: error: the graphics library crashed (segmentation fault)",
              aborted[] = "pliant: error: the graphics library aborted",

@@ -15,8 +15,8 @@ nlohmann-json3-dev libcli11-dev libpng-dev zlib1g-dev libassimp-dev libosmesa6|l
 # The window of `pliant view` needs these packages; without them the program is built without a window.
 pliant_window_packages="libglfw3-dev libimgui-dev"
 # Tests also need GCC for the clients of the library, both libraries that draw without a screen, an independent validator of
-# the scenes' schema, Python for the tests package/scene_keys and package/house, and a virtual display with synthetic inputs
-# for tests of the window.
+# the scenes' schema, Python for the tests that are Python scripts, and a virtual display with synthetic inputs for tests of
+# the window.
 pliant_test_packages="g++ catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev $pliant_window_packages xvfb xdotool"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
@@ -121,7 +121,7 @@ pliant_jobs() {
 
 # pliant_configure PRESET [option...]: configures build/PRESET. A new folder uses the compiler CXX if this variable is set,
 # or else Clang if it is installed: it needs two thirds of the time of GCC. Ninja and ccache are used if they are installed.
-# ccache does not store objects that use precompiled headers, so with ccache there are none.
+# ccache does not store objects that use precompiled headers, so a build with ccache uses no precompiled headers.
 pliant_configure() {
   preset=$1
   shift

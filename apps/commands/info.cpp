@@ -36,7 +36,7 @@ void print_parameters(const pliant::Part& part) {
   for (int i = 0; i < parameters.size(); ++i) {
     const pliant::Parameter& p = parameters[i];
     std::cout << (i == 0 ? "  parameters: " : ", ") << p.name << " = " << p.rest_value();
-    if (p.dynamic) std::cout << " (dynamic, from " << p.initial << ")";
+    if (p.dynamic) std::cout << " (dynamic, initial value " << p.initial << ")";
   }
   if (parameters.size() > 0) std::cout << "\n";
 }
@@ -98,7 +98,7 @@ void print_obstacles(const pliant::MultiBody& body) {
     const pliant::ObstacleMesh mesh(obstacle.vertices, obstacle.triangles);
     std::cout << "obstacle " << obstacle.name << ": "
               << pliant::count_text(mesh.triangles().cols(), "triangle")
-              << (mesh.closed() ? ", closed" : ", open: one-sided") << ", from ";
+              << (mesh.closed() ? ", closed" : ", open: bodies pass through it from behind") << ", from ";
     print_vector(mesh.box().min());
     std::cout << " to ";
     print_vector(mesh.box().max());
@@ -115,7 +115,9 @@ void print_point(const pliant::Simulation& simulation, const pliant::Point& poin
   const pliant::MaterialAngles at = pliant::angles(point.material);
   std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
   print_vector(pliant::PlacedPoint(simulation.model(), point).at(simulation.state()), point.part->size());
-  if (point.patch > 0) std::cout << " over " << pliant::Model::node_weights(point).node.size() << " nodes";
+  if (point.patch > 0)
+    std::cout << ", weighted mean over a patch of " << pliant::Model::node_weights(point).node.size()
+              << " nodes";
 }
 
 void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {
@@ -191,7 +193,8 @@ void print_joints(const pliant::Simulation& simulation) {
             << pliant::count_text(islands, "island");
   if (islands > augmented) std::cout << ", " << islands - augmented << " solved by blocks of C_q M^-1 C_q^T";
   if (augmented > 0) std::cout << ", " << augmented << " solved with the augmented matrix";
-  std::cout << ", " << pliant::count_text(numbers, "number") << " in the factor\n";
+  std::cout << ", " << pliant::count_text(numbers, "number")
+            << (islands == 1 ? " in the factor\n" : " in the factors of all islands\n");
   for (const std::string& note : pliant::redundancy_notes(simulation)) std::cout << "  " << note << "\n";
 }
 
@@ -207,8 +210,9 @@ int info(const SceneOptions& options) {
     if (part.q0 >= 0) mass += part.part->total_mass();
   }
   std::cout << pliant::count_text(static_cast<std::int64_t>(model.parts().size()), "part") << ", "
-            << model.n_v() << " degrees of freedom (" << model.n_limits() << " dynamic parameters, " << frozen
-            << " frozen), " << mass << " kg in parts with degrees of freedom\n";
+            << model.n_v() << " degrees of freedom, " << model.n_limits() << " of them dynamic parameters; "
+            << pliant::count_text(frozen, "parameter") << " frozen; " << mass
+            << " kg in parts with degrees of freedom\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
   print_obstacles(scene->body);
   print_joints(simulation);
@@ -216,12 +220,12 @@ int info(const SceneOptions& options) {
   std::cout << "skipped:\n";
   for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";
   const pliant::FrameSchedule schedule = pliant::schedule_of(*scene);
-  std::cout << "run: ";
+  std::cout << "run: until " << schedule.end() << " s, ";
   if (scene->tolerance > 0)
     std::cout << "adaptive steps with a tolerance of " << simulation.tolerance();
   else
     std::cout << schedule.steps() << " steps of " << schedule.step() << " s";
-  std::cout << " to " << schedule.end() << " s with " << simulation.integrator().name() << ", "
+  std::cout << ", method " << simulation.integrator().name() << ", "
             << pliant::count_text(schedule.frames(), "frame") << "\n";
   if (!simulation.choice().why.empty()) std::cout << "  chosen: " << simulation.choice().why << "\n";
   const pliant::StableStep stable = pliant::stable_step(simulation);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 const char* status_text(const pliant::RunRecord& record) {
   switch (record.status) {
     case pliant::RunRecord::Status::running:
-      return "still running, or killed: continue with pliant run --resume";
+      return "still running, or killed; pliant run --resume continues a killed run";
     case pliant::RunRecord::Status::complete:
       return "complete";
     case pliant::RunRecord::Status::stopped:

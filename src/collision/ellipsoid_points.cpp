@@ -1,5 +1,5 @@
-// Nearest points of ellipsoids: the support direction, and Newton's method for the scalar equation
-// 1 / |y(lambda)| = 1.
+// The lowest point of an ellipsoid over a plane, and the point of an ellipsoid at which the radial coordinate
+// of another ellipsoid is least. Newton's method finds the latter.
 #include <pliant/collision/ellipsoid_points.h>
 
 #include <cmath>

@@ -31,7 +31,8 @@ std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end() && !is_imported(ending))
-    throw std::invalid_argument("expected a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off");
+    throw std::invalid_argument(
+        "expected a file name that ends in .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off");
   return ending;
 }
 
@@ -47,7 +48,8 @@ MeshFile read_mesh(const std::filesystem::path& name, std::string bytes) {
   const std::string ending = ending_of(name);
   const MeshBytes file{name.string(), std::move(bytes)};
   if (is_imported(ending))
-    throw std::invalid_argument(file.name + ": only whole files of this format can be read");
+    throw std::invalid_argument(
+        file.name + ": a mesh of this format is read from its file only, not from memory (read_mesh_file)");
   return cleaned(ending == ".obj"   ? read_obj(file)
                  : ending == ".ply" ? read_ply(file)
                  : ending == ".stl" ? read_stl(file)

@@ -152,7 +152,7 @@ TEST_CASE("info reports joints: rows, rank, islands, and the size of the factor"
   const std::string two = info("two.json");
   CHECK(has(two,
             "constraints: 9 rows of rank 9, 2 islands, 2 solved by blocks of C_q M^-1 C_q^T, 36 numbers "
-            "in the factor\n"));
+            "in the factors of all islands\n"));
   CHECK_FALSE(has(two, "redundant"));
 }
 

@@ -182,7 +182,8 @@ TEST_CASE("files that are not meshes are refused with the place of the fault") {
   refused("a.gltf", gltf_json("[{\"mesh\": 0}]", "data:;base64,AAAA"),
           "/buffers/0: found data of 3 bytes; expected 168");
   refused("a.gltf", gltf_json("[{\"mesh\": 0}]", "../b.bin"), "expected the name of a file in the folder");
-  refused("a.blend", "anything", "expected a file .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off");
+  refused("a.blend", "anything",
+          "expected a file name that ends in .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .3ds or .off");
   // The topology is checked after the cleaning.
   refused("a.obj", obj("f 1 2 3\nf 2 3 4\n"), "have opposite orientations");
   refused("a.obj", obj("v 0 0 9\nf 1 2 3\nf 3 2 4\nf 2 3 5\n"), "has three triangles: 0, 1 and 2");
@@ -242,7 +243,7 @@ TEST_CASE("other formats are imported in a process that may crash") {
     CHECK_THROWS_AS(read_mesh_file(folder / name), std::invalid_argument);
   }
   CHECK_THROWS_AS(read_mesh_file(folder / "none.off"), FileError);
-  CHECK_THROWS_AS(read_mesh("cube.off", "OFF"), std::invalid_argument);  // no whole file
+  CHECK_THROWS_AS(read_mesh("cube.off", "OFF"), std::invalid_argument);  // from memory
 }
 
 }  // namespace mesh_file_test

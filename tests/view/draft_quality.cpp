@@ -7,7 +7,8 @@ namespace draft_quality_test {
 using namespace pliant;
 using Quality = WindowRenderer::Quality;
 
-/// Adds pictures whose time is proportional to the number of samples. full: time with one for each pixel, s.
+/// Adds pictures whose time is proportional to the number of samples. full: time of a picture
+/// with one sample for each pixel, s.
 /// Returns the number of changes.
 int draw(DraftQuality& draft, double full, int pictures) {
   int changes = 0;
@@ -55,7 +56,7 @@ TEST_CASE("drafts do not lose samples if this saves little time") {
     draft.add(0.036 + 0.003 * samples * samples);  // mostly other work
     if (draft.quality() != Quality::draft) ++lower;
   }
-  CHECK(lower > 0);  // trials
+  CHECK(lower > 0);  // the lower quality is tried from time to time
   CHECK(lower < 0.05 * pictures);
 }
 
@@ -68,7 +69,8 @@ TEST_CASE("drafts get their samples back although a part of their time is other 
     }
   };
   add(60, 3);
-  CHECK(draft.quality() == Quality::two_thirds_draft);  // half of the samples would save 8 % of the time
+  // The next quality has 1/4 sample for each pixel instead of 4/9. It would save 8 % of the time.
+  CHECK(draft.quality() == Quality::two_thirds_draft);
   add(3 * DraftQuality::kPause, 1);
   CHECK(draft.quality() == Quality::draft);
 }

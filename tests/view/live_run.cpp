@@ -136,7 +136,7 @@ TEST_CASE("a live run does not catch up the time of a slow command") {
   CHECK(run.snapshot()->state.time() - before < wall - 0.3);  // 0.2 s for delays by other processes
 }
 
-TEST_CASE("a snapshot has the drag, its ledger and the message of a command that fails") {
+TEST_CASE("a snapshot has the drag, the ledger of the simulation, and the message of a command that fails") {
   const std::unique_ptr<Scene> scene = ball_scene();
   LiveRun run(*scene);
   const Part& ball = *scene->body.find("ball");

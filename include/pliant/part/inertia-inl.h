@@ -24,7 +24,7 @@ namespace detail {
 /// Number of packs in a batch. The jets of a batch stay in the first-level cache.
 inline constexpr int kInertiaBlock = 8;
 
-/// The scalar of four points at once, for a scalar P of the parameters.
+/// The number type of four points at once. P: the number type of the parameters.
 template <class P>
 struct BatchScalar;
 template <>

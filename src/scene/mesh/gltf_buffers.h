@@ -22,8 +22,8 @@ class Buffers {
       : root_(std::move(root)), embedded_(std::move(embedded)), folder_(std::move(folder)) {}
 
   /// Return the vectors (type VEC3, finite) or integers (type SCALAR, below `limit`) of an accessor. user:
-  /// the value that has the number of the accessor. They throw std::invalid_argument with the place of a
-  /// fault, and FileError for a buffer file that cannot be read.
+  /// the JSON number that selects the accessor; messages name its place. They throw std::invalid_argument
+  /// with the place of a fault, and FileError for a buffer file that cannot be read.
   std::vector<Vec3<double>> vectors(const Value& user);
   std::vector<std::size_t> integers(const Value& user, std::size_t limit);
 

@@ -3,9 +3,9 @@
 //   4 nodes    N_a = L_a
 //   10 nodes   N_a = L_a (2 L_a - 1) at corners, 4 L_a L_b on the edges 01 12 20 03 13 23
 //   15 nodes   the 10-node functions enriched with bubbles: 27 L_a L_b L_c on faces (node 10 + f is on the
-//              face without corner f) and 256 L_0 L_1 L_2 L_3 in the middle (node 14). The bubbles make the
-//              lumped masses positive and keep convergence of fourth order (Geevers, Mulder & van der Vegt
-//              2018).
+//              face without corner f) and 256 L_0 L_1 L_2 L_3 in the middle (node 14). With the
+//              bubbles the lumped masses are positive. Frequencies of vibration converge with fourth order
+//              (Geevers, Mulder & van der Vegt 2018).
 // Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
 // exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that the nodal forces of a uniform stress
 // are in balance on curved elements, too. With 15 nodes a small imbalance remains if the rest positions

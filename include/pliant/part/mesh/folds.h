@@ -1,6 +1,6 @@
 // Folds: a deformation that is too strong for the body turns a piece of the body inside out. In this piece
-// the determinant of the gradient of the chain is negative. The determinants of the deformations have their
-// extreme values on the surface, so only the surface is sampled.
+// the determinant of the gradient of the chain is negative. Only the surface is sampled, because there each
+// deformation has its extreme determinants.
 #pragma once
 
 #include <pliant/part/part.h>
