@@ -242,7 +242,7 @@ void Model::add_joint(const Joint& joint) {
     const PartModel& of = parts_[static_cast<std::size_t>(part)];
     m.driven = m.driven || of.motion != nullptr;
     if (of.q0 < 0) continue;
-    length = std::min(length, of.part->size());
+    length = std::min(length, of.size);
     const bool known =
         std::any_of(m.sides.begin(), m.sides.end(), [&](const JointSide& side) { return side.part == part; });
     if (known) continue;

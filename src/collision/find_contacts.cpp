@@ -264,7 +264,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
       if (rule.touch) find_on_pair(i, j, rule, max_gap, found);
     }
   }
-  s.last_count = found.size();
+  if (marked == nullptr) s.last_count = found.size();
   return found;
 }
 

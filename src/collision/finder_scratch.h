@@ -29,7 +29,7 @@ struct ContactFinder::Placed {
   double reach;                               ///< radius of a ball about c that contains the part, m
   std::optional<Vec3<double>> axes;           ///< semi-axes of an ellipsoid, m
   std::optional<Vec3<double>> half;           ///< half sizes of a box, m
-  bool shape_known = false;                   ///< whether reach, axes and half are those of a fixed shape
+  bool shape_known = false;                   ///< whether reach, axes and half have been computed
   bool points_current = false;                ///< whether Scratch::points belongs to the present parameters
   std::optional<bool> hull, convex;           ///< uses_hull() and is_convex() at the present parameters
 
@@ -67,7 +67,7 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::AlignedBox3d> wide;
   std::vector<std::pair<int, int>> wide_pairs;
   double wide_reach = 0, wide_margin = 0;
-  std::size_t last_count = 0;  ///< number of contacts of the last search
+  std::size_t last_count = 0;  ///< number of contacts of the last search of all parts
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
   std::vector<PairTouch> of_hulls;

@@ -40,7 +40,7 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, Simulation& simulation)
   // and dynamic parameters gets the columns.
   for (const PartModel& part : simulation.model().parts()) {
     const double offset = part.part->rest_inertia().moment.norm();
-    const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
+    const bool moved = offset > 1e-12 * part.part->total_mass() * part.size;
     centre_shown_.push_back(part.q0 >= 0 &&
                             (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
     local_shown_ = local_shown_ || part.local != nullptr;

@@ -48,8 +48,8 @@ MeshFile read_mesh(const std::filesystem::path& name, std::string bytes) {
   const std::string ending = ending_of(name);
   const MeshBytes file{name.string(), std::move(bytes)};
   if (is_imported(ending))
-    throw std::invalid_argument(
-        file.name + ": a mesh of this format is read from its file only, not from memory (read_mesh_file)");
+    throw std::invalid_argument(file.name +
+                                ": a mesh of this format cannot be read from memory; call read_mesh_file()");
   return cleaned(ending == ".obj"   ? read_obj(file)
                  : ending == ".ply" ? read_ply(file)
                  : ending == ".stl" ? read_stl(file)

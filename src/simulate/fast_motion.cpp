@@ -72,7 +72,7 @@ void FastMotions::set_scales() {
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.q0 < 0) continue;
-    const double size = m.part->size();
+    const double size = m.size;
     length_.segment(m.v0, m.n_v()).setConstant(size);
     length_.segment<3>(m.v0 + 3).setOnes();
     const MatX<double> M = mass_matrix(work_.parts[i]);

@@ -28,7 +28,7 @@ double extent(const Simulation& simulation) {
   Eigen::AlignedBox3d all;
   for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
     const Vec3<double> c = simulation.model().position(simulation.state(), static_cast<int>(i));
-    const Vec3<double> size = Vec3<double>::Constant(simulation.model().parts()[i].part->size());
+    const Vec3<double> size = Vec3<double>::Constant(simulation.model().parts()[i].size);
     all.extend(c - size).extend(c + size);
   }
   return all.diagonal().norm();

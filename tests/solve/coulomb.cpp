@@ -46,6 +46,23 @@ TEST_CASE("the impulse of a contact obeys Coulomb's law", "[coulomb]") {
   CHECK(slid > 1000);
 }
 
+TEST_CASE("a contact sticks where its response is nearly singular", "[coulomb]") {
+  Draws draws(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3<double> r = draws.vector(1);
+    const double floor = std::pow(10, draws.uniform(-12, -6)) * r.squaredNorm();
+    const Mat3<double> W = r * r.transpose() + floor * Mat3<double>::Identity();
+    const Vec3<double> inside(1, draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5)), b = -W * inside;
+    if (!(b[0] < 0)) continue;
+    const Vec3<double> p = solve_coulomb(W, b, 2);
+    CAPTURE(trial, floor, p.transpose(), inside.transpose());
+    REQUIRE((W * p + b).norm() <= 1e-15 * W.norm() * (p.norm() + inside.norm()));
+    REQUIRE((p - inside).norm() <= 10 * 1e-15 * r.squaredNorm() / floor * inside.norm());
+  }
+  const Vec3<double> along_normal = solve_coulomb(Vec3<double>(1, 0, 0).asDiagonal(), {-1, 0, 0}, 1);
+  CHECK(along_normal == Vec3<double>(1, 0, 0));
+}
+
 TEST_CASE(
     "a point mass that hits a plane sticks if its tangential velocity is at most mu times its normal "
     "velocity, else it slides",

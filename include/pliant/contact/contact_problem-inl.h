@@ -93,8 +93,8 @@ PLIANT_INLINE void ContactProblem::add_predicted() {
   }
 }
 
-/// Adds a side of the present contact. x: the contact point, m, world. to_contact: from the world to the axes
-/// of the contact, negative for side b.
+/// Adds a side of the contact that is being added. x: the contact point, m, world. to_contact: matrix from
+/// the world to the axes of the contact, with a minus sign for side b.
 PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Vec3<double>& x,
                                             const Mat3<double>& to_contact) {
   const PartModel& m = model_.parts()[at(side.part)];

@@ -372,9 +372,11 @@ PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vect
   const double t = step.t;
   for (int link = 0; link < contact_resolution::kMaxChainLinks && !resolved.empty(); ++link) {
     const Pairs known(resolved);
+    auto opening = [&](const Contact& contact) {
+      return finder_.velocity(state, contact).dot(contact.normal);
+    };
     auto is_impact = [&](const Contact& contact) {
-      return contact.gap < -resting_.gap(contact) &&
-             finder_.velocity(state, contact).dot(contact.normal) < -min_impact_speed &&
+      return contact.gap < -resting_.gap(contact) && opening(contact) < -min_impact_speed &&
              !known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; });
     };
     const std::vector<Contact>& near = resting_.near(state, t);
@@ -383,7 +385,7 @@ PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vect
     double earliest = 0;  // time since the first of these impacts, s
     for (Contact& contact : contacts) {
       if (!is_impact(contact)) continue;
-      const double u = finder_.velocity(state, contact).dot(contact.normal);
+      const double u = opening(contact);
       contact.since = std::min(step.h, contact.gap / u);
       if (-contact.restitution * u > min_impact_speed) contact.rebound = -contact.restitution * u;
       earliest = std::max(earliest, contact.since);

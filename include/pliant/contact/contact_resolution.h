@@ -63,7 +63,7 @@ class ContactResolution {
 
   /// Applies the impulses at the contacts at step.t, the end of a motion, and the displacements that these
   /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero or
-  /// motion.separates is false.
+  /// motion.separates is false. contacts: not a result of RestingContacts::near(), which changes meanwhile.
   void resolve(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts);
   /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
   /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the

@@ -114,7 +114,8 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
       contacts.end());
 }
 
-/// Returns whether no contact is deeper than its allowed overlap.
+/// Returns whether no contact is deeper than its allowed overlap. For an overlap deeper than
+/// RestingContacts::gap it returns false, because contacts_to_separate() then searches farther.
 PLIANT_INLINE bool ContactResolution::is_separated(const std::vector<Contact>& contacts) const {
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
     return contact.gap >= 0 || contact.gap >= -std::min(allowed_overlap(contact), resting_.gap());

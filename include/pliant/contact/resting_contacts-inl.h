@@ -188,6 +188,7 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
   add_followed(resting, max_gap, found);
+  // The time of the force is positive. Contacts that have not rested get the time zero.
   for (Contact& contact : found) contact.since = rested(contact) ? motion.force_time() : 0;
   found.erase(
       std::remove_if(found.begin(), found.end(), [](const Contact& c) { return c.since == 0 && c.gap > 0; }),

@@ -17,7 +17,7 @@ PLIANT_INLINE ErrorScale::ErrorScale(const Model& model, double tolerance)
   parameter_.setOnes(model.n_v());
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
-    const double size = m.part->size();
+    const double size = m.size;
     for (int k = 0; k < m.n_s; ++k)
       if (m.part->parameters().moving(k).spec->quantity == Quantity::length)
         parameter_[m.v0 + 6 + k] = 1 / size;
@@ -33,7 +33,7 @@ template <class Visit>
 void ErrorScale::visit_coordinates(const VecX<double>& q_error, Visit&& visit) const {
   for (const PartModel& m : model_->parts()) {
     if (m.q0 < 0) continue;
-    visit(q_error.segment<3>(m.q0).norm() / m.part->size(), m, "the position");
+    visit(q_error.segment<3>(m.q0).norm() / m.size, m, "the position");
     visit(2 * q_error.segment<4>(m.q0 + 3).norm(), m, "the rotation");
     const auto scale = parameter_.segment(m.v0 + 6, m.n_s + m.n_d());
     const auto other = q_error.segment(m.q0 + 7, m.n_s + m.n_d());
@@ -50,7 +50,7 @@ template <class Visit>
 void ErrorScale::visit_velocities(const VecX<double>& v_error, const VecX<double>& v, Visit&& visit) const {
   for (const PartModel& m : model_->parts()) {
     if (m.q0 < 0) continue;
-    const double size = m.part->size();
+    const double size = m.size;
     const auto scale = parameter_.segment(m.v0 + 6, m.n_s + m.n_d());
     const auto other = v_error.segment(m.v0 + 6, m.n_s + m.n_d());
     double fastest = std::max(v.segment<3>(m.v0).norm() / size, v.segment<3>(m.v0 + 3).norm());

@@ -33,7 +33,7 @@ inline double impulse_scale(const Model& model, const JointModel& joint, const V
   for (const JointSide& side : joint.sides) {
     const PartModel& m = model.parts()[static_cast<std::size_t>(side.part)];
     mass = std::min(mass, m.part->total_mass());
-    speed = std::max(speed, v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm());
+    speed = std::max(speed, v.segment<3>(m.v0).norm() + m.size * v.segment<3>(m.v0 + 3).norm());
   }
   return mass * speed;
 }

@@ -46,7 +46,7 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
   const NodalDeformation::ConditionViolation violation =
       local.violation(at_nodes(state.q, m.q0 + 7), at_nodes(state.v, m.v0 + 6), *work.local);
   const Vec<double, 6> inertia = work.local->H0.diagonal();
-  const double size = m.part->size();
+  const double size = m.size;
   const auto small = [&](const Vec<double, 6>& share) {
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
@@ -102,7 +102,7 @@ inline void project_frame(StepContext& step, std::size_t i) {
   const NodalDeformation& local = *m.local->nodal();
   NodalWorkspace& now = NodalDeformation::of(*w.local);
   const Eigen::Index n = local.n_nodes();
-  const double size = m.part->size();
+  const double size = m.size;
   Nodes &p = now.p_kept, &u = now.u_kept;
   u.resize(n, 3);
   local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());

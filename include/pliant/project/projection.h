@@ -318,7 +318,7 @@ class Projection {
     int i = 0;
     for_each_coordinates([&](const auto& stored, const auto& now) {
       const PartModel& m = group_.model(i++);
-      const double size = m.part->size();
+      const double size = m.size;
       const auto v = part_velocities(m, std::as_const(state_.v));
       correction +=
           (stored.template head<3>() - now.template head<3>()).squaredNorm() +

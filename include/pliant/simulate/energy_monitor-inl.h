@@ -23,8 +23,8 @@ PLIANT_INLINE EnergyMonitor::EnergyMonitor(const Model& model) {
   const double gravity = model.body().gravity_at(0).norm();
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
-    lift_ += energy_monitor::kLift * gravity * m.part->total_mass() * m.part->size();
-    second_ += m.part->total_mass() * m.part->size() * m.part->size();
+    lift_ += energy_monitor::kLift * gravity * m.part->total_mass() * m.size;
+    second_ += m.part->total_mass() * m.size * m.size;
   }
 }
 

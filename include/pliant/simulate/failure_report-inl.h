@@ -24,7 +24,7 @@ PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
   for (const PartModel& m : model.parts()) {
     if (m.local == nullptr) continue;
     const Nodes d = m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s);
-    const double farthest = d.rowwise().norm().maxCoeff() / m.part->size();
+    const double farthest = d.rowwise().norm().maxCoeff() / m.size;
     if (!(farthest > kBurst)) continue;
     message << "part '" << m.part->name() << "' has burst: its nodes are up to " << farthest
             << " times its size away from rest, because its elasticity does not balance its load (use a "

@@ -208,7 +208,7 @@ class StableStepSearch {
     const State initial = model_.initial_state();
     return std::any_of(model_.parts().begin(), model_.parts().end(), [&](const PartModel& m) {
       return m.q0 >= 0 &&
-             !((state_.q.segment<3>(m.q0) - initial.q.segment<3>(m.q0)).norm() <= kFarOut * m.part->size());
+             !((state_.q.segment<3>(m.q0) - initial.q.segment<3>(m.q0)).norm() <= kFarOut * m.size);
     });
   }
 
@@ -273,11 +273,11 @@ class StableStepSearch {
       double strain = 0;
       for (int k = 0; k < m.n_s; ++k)
         if (m.part->parameters().moving(k).spec->quantity == Quantity::length)
-          strain = std::max(strain, half_square * std::abs(work.v_dot[m.v0 + 6 + k]) / m.part->size());
+          strain = std::max(strain, half_square * std::abs(work.v_dot[m.v0 + 6 + k]) / m.size);
       if (m.local != nullptr && m.local->nodal() != nullptr && m.n_d() > 0)
-        strain = std::max(strain, half_square *
-                                      work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()).cwiseAbs().maxCoeff() /
-                                      m.part->size());
+        strain = std::max(
+            strain,
+            half_square * work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()).cwiseAbs().maxCoeff() / m.size);
       if (!(std::max(turn, strain) > farthest)) continue;
       farthest = std::max(turn, strain);
       smallest_.uncounted = "the start is far from equilibrium: its loads " +

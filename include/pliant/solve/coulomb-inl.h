@@ -40,12 +40,14 @@ PLIANT_INLINE CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
 }
 
 PLIANT_INLINE Vec3<double> CoulombLaw::stick(double p_frictionless, const Eigen::Vector2d& c) const {
-  // A p_t = -c, by L D L^T. The first pivot is the larger diagonal entry of A. If the second pivot is zero to
-  // rounding, its part of the impulse is zero.
+  // Solves A p_t = -c by the factors L D L^T of A. The first pivot is the larger diagonal entry of A. If the
+  // second pivot is zero to rounding, the impulse along the other tangent is zero. Without a positive pivot
+  // there is no tangential impulse.
   const int i = A_(0, 0) < A_(1, 1) ? 1 : 0, j = 1 - i;
+  if (!(A_(i, i) > 0)) return {p_frictionless, 0, 0};
   const double l = A_(j, i) / A_(i, i), pivot = A_(j, j) - l * A_(i, j);
   Eigen::Vector2d p_t;
-  p_t[j] = pivot > std::numeric_limits<double>::epsilon() * A_(i, i) ? -(c[j] - l * c[i]) / pivot : 0;
+  p_t[j] = pivot > std::numeric_limits<double>::epsilon() * A_(j, j) ? -(c[j] - l * c[i]) / pivot : 0;
   p_t[i] = -c[i] / A_(i, i) - l * p_t[j];
   return {p_frictionless - coupling_.dot(p_t) / W_n_, p_t[0], p_t[1]};
 }

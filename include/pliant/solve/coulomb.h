@@ -21,8 +21,8 @@ class CoulombLaw {
   /// Returns the impulse of a sticking contact. p_frictionless: the normal impulse without friction. c: the
   /// tangential velocity with this impulse.
   Vec3<double> stick(double p_frictionless, const Eigen::Vector2d& c) const;
-  /// Returns the impulse of a sliding contact, with the same arguments. If s exceeds the range of a double,
-  /// the result is p_frictionless along the normal and no tangential impulse.
+  /// Returns the impulse of a sliding contact. p_frictionless, c: as for stick(). If s exceeds the range of a
+  /// double, the result is p_frictionless along the normal and no tangential impulse.
   Vec3<double> slide(double p_frictionless, const Eigen::Vector2d& c) const;
 
   double mu_ = 0, W_n_ = 1;

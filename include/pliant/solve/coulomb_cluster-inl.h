@@ -325,6 +325,7 @@ PLIANT_INLINE void CoulombCluster::record(double residual, CoulombResult& result
   result.residual = std::max(result.residual, residual);
   const double share = tolerance_.share.value_or(detail::kReportedShare),
                accepted = std::max(exact_level(), share * approach_);
+  // Without limits all weights (weight_of) are 1.
   const double reported = has_limits_ ? this->residual(share, accepted) : residual;
   if (!(reported * result.worst_accepted >= result.worst_residual * accepted) || !(reported > 0)) return;
   result.worst_residual = reported;

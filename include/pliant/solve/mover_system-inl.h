@@ -29,7 +29,7 @@ inline void insert_sorted(std::vector<int>& sorted, int i) {
 }
 
 /// Replaces A by its inverse, by Gauss-Jordan elimination with exchanges of rows. For a small N this is
-/// several times as fast as A.inverse(). If A is singular, the result is not finite.
+/// several times as fast as A.inverse(). If a pivot is zero, the result is not finite.
 template <int N>
 void invert(Eigen::Matrix<double, N, N>& A) {
   std::array<Eigen::Index, N> pivot_row;
@@ -138,19 +138,22 @@ template <int N>
 Eigen::Matrix<double, N, N> MoverSystem::inverse_of(const Mover& k) const {
   using Numbers = Eigen::Matrix<double, N, N>;
   Numbers A = Eigen::Map<const Numbers>(numbers_.data() + k.numbers, k.size, k.size);
-  if constexpr (N == 3) return A.inverse();  // closed form, without pivoting
-  const auto weight = weight_.segment<N>(k.row, k.size);
-  const auto scale = [&](Numbers& to, bool back) {
-    for (int j = 0; j < k.size; ++j)
-      for (int i = 0; i < k.size; ++i) to(i, j) *= back ? weight[j] / weight[i] : weight[i] / weight[j];
-  };
-  scale(A, false);
-  if constexpr (N == Eigen::Dynamic)
-    A = A.inverse().eval();
-  else
-    detail::invert(A);
-  scale(A, true);
-  return A;
+  if constexpr (N == 3) {
+    return A.inverse();  // closed form, without pivoting
+  } else {
+    const auto weight = weight_.segment<N>(k.row, k.size);
+    const auto scale = [&](Numbers& to, bool back) {
+      for (int j = 0; j < k.size; ++j)
+        for (int i = 0; i < k.size; ++i) to(i, j) *= back ? weight[j] / weight[i] : weight[i] / weight[j];
+    };
+    scale(A, false);
+    if constexpr (N == Eigen::Dynamic)
+      A = A.inverse().eval();
+    else
+      detail::invert(A);
+    scale(A, true);
+    return A;
+  }
 }
 
 /// Eliminates mover k: x_k = (1 + A_kk)^-1 (b_k - sum of A_kj x_j over its remaining neighbours).

@@ -201,7 +201,7 @@ void Run::note_ground() {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PartModel& m = parts[i];
     if (m.q0 < 0 || !scene_->appearance[i].visible) continue;
-    if (!(simulation_->state().q[m.q0 + 2] < *scene_->ground.height - m.part->size())) continue;
+    if (!(simulation_->state().q[m.q0 + 2] < *scene_->ground.height - m.size)) continue;
     reported_ground_ = true;
     note_once("at t = " + rounded_text(simulation_->time()) + " s part '" + m.part->name() +
               "' is below the drawn ground, which is not solid; add a plane at its height, " +

@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-/// Returns (x, y) so that atan2(y, x) is the twist of the frame a relative to the frame b.
+/// Returns (x, y), where atan2(y, x) is the twist of the frame a relative to the frame b.
 template <class T>
 Vec<T, 2> twist_direction(const Framed<T>& a, const Framed<T>& b) {
   constexpr double least = 1e-12;  // of 1 + cos theta, near a swing of pi

@@ -160,7 +160,7 @@ class IslandForces {
         straight += std::pow(plain(change[group_.first(i) + k]), 2);
         turning += std::pow(plain(change[group_.first(i) + 3 + k]), 2);
       }
-      largest = std::max({largest, std::sqrt(straight), group_.model(i).part->size() * std::sqrt(turning)});
+      largest = std::max({largest, std::sqrt(straight), group_.model(i).size * std::sqrt(turning)});
     }
     return largest;
   }

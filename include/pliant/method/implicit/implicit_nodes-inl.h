@@ -114,7 +114,7 @@ PLIANT_INLINE void ImplicitNodes::make_pattern() {
   const Eigen::Index n_d = local().n_d();
   VecX<double> perturbed = rest_.x;
   for (Eigen::Index i = 0; i < n_d; ++i)
-    perturbed[i] += implicit_nodes::kPerturbation * part_->part->size() * std::sin(static_cast<double>(i));
+    perturbed[i] += implicit_nodes::kPerturbation * part_->size * std::sin(static_cast<double>(i));
   implicit_nodes::Entries lower;
   for (int i = 0; i < n_d; ++i) lower.emplace_back(i, i, 0.0);
   implicit_nodes::for_each_entry(local(), implicit_nodes::Of::displacement, &NodalEnergy::add_stiffness,

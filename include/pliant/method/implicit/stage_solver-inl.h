@@ -105,7 +105,7 @@ PLIANT_INLINE StageSolver::StageSolver(const Model& model)
     Cluster& cluster = clusters_[at(number)];
     cluster.parts.push_back(i);
     for (int k = 0; k < m.n_v(); ++k) cluster.velocities.push_back(m.v0 + k);
-    const double size = m.part->size();
+    const double size = m.size;
     difference_.segment(m.v0, m.n_v()).setConstant(stage_solver::kDifference * size);
     difference_.segment<3>(m.v0 + 3).setConstant(stage_solver::kDifference);
     for (int k = 0; k < m.n_s; ++k)
