@@ -53,9 +53,10 @@ void print_part(const pliant::PartModel& model) {
   else if (part.fixed())
     std::cout << "  fixed: no degrees of freedom\n";
   else
-    std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s()
-              << " dynamic parameters; " << frozen << " frozen"
-              << (part.local() != nullptr ? "; " + part.local()->description() : "") << ")\n";
+    std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, "
+              << pliant::count_text(part.n_s(), "dynamic parameter")
+              << (part.local() != nullptr ? "; " + part.local()->description() : "") << "), "
+              << pliant::count_text(frozen, "parameter") << " frozen\n";
   const pliant::Inertia<double>& inertia = part.rest_inertia();
   const Vec3<double> centre =
       inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);
@@ -210,8 +211,9 @@ int info(const SceneOptions& options) {
     if (part.q0 >= 0) mass += part.part->total_mass();
   }
   std::cout << pliant::count_text(static_cast<std::int64_t>(model.parts().size()), "part") << ", "
-            << model.n_v() << " degrees of freedom, " << model.n_limits() << " of them dynamic parameters; "
-            << pliant::count_text(frozen, "parameter") << " frozen; " << mass
+            << model.n_v() << " degrees of freedom ("
+            << pliant::count_text(model.n_limits(), "dynamic parameter") << "), "
+            << pliant::count_text(frozen, "parameter") << " frozen, " << mass
             << " kg in parts with degrees of freedom\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
   print_obstacles(scene->body);
