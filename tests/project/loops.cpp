@@ -7,6 +7,7 @@
 #include <ctime>
 #include <functional>
 #include <numeric>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -505,7 +506,8 @@ TEST_CASE("a thousand links stay joined, with an end mass of 1 kg and of 1e6 kg"
 
 TEST_CASE("N39: a step of 1000 links takes at most 12 times as long as a step of 100 links",
           "[loops][long]") {
-  // Processor time, the minimum of several rounds: other load on the machine can only increase it.
+  // The median of the ratios of processor times of several rounds. The speed of the machine may change from
+  // round to round.
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double mass : {1., 1e6}) {
       auto hanging = [&](MultiBody& body, int links) -> MultiBody& {
@@ -519,14 +521,12 @@ TEST_CASE("N39: a step of 1000 links takes at most 12 times as long as a step of
         for (int i = 0; i < steps; ++i) simulation.step(1e-4);
         return static_cast<double>(std::clock() - start) / steps;
       };
-      double ticks_100 = 1e300, ticks_1000 = 1e300;
-      for (int round = 0; round < 100 && (round < 10 || ticks_1000 > 12 * ticks_100); ++round) {
-        ticks_100 = std::min(ticks_100, time(small, 100));
-        ticks_1000 = std::min(ticks_1000, time(large, 10));
-      }
-      INFO(method << ", " << mass << " kg: " << ticks_100 << " and " << ticks_1000 << " ticks, ratio "
-                  << ticks_1000 / ticks_100);
-      CHECK(ticks_1000 <= 12 * ticks_100);
+      std::vector<double> ratios;
+      for (int round = 0; round < 31; ++round) ratios.push_back(time(large, 10) / time(small, 100));
+      const auto median = ratios.begin() + 15;
+      std::nth_element(ratios.begin(), median, ratios.end());
+      INFO(method << ", " << mass << " kg: ratio " << *median);
+      CHECK(*median <= 12);
     }
 }
 
