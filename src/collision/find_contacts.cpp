@@ -8,10 +8,8 @@
 
 #include <pliant/body/multibody.h>
 #include <pliant/collision/ellipsoid_points.h>
-#include <pliant/collision/mesh/find_on_mesh.h>
 #include <pliant/math/index.h>
 
-#include "collision/hull/touch_plane.h"
 #include "finder_scratch.h"
 #include "outline.h"
 
@@ -120,15 +118,11 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double max_gap,
     return;
   }
   if (uses_hull(a)) {
-    std::vector<CollisionSurface::LowPoint>& points = scratch_->low_points;
-    points.clear();
     const Vec3<double> along = placed.R.transpose() * normal.unitOrthogonal();
-    // For dynamic parameters the test of convexity takes longer than the search from several starts.
-    const bool convex = has_fixed_shape(a) && is_convex(a);
-    const Hull hull(*model_->parts()[at(a)].part, values,
-                    convex ? Hull::Convexity::convex : Hull::Convexity::unknown);
-    touch_plane(hull, surface.thickness(), {n, offset, along}, max_gap, scratch_->hull_points, points);
-    for (const CollisionSurface::LowPoint& low : points) add(low);
+    const Hull hull = hull_of(a);
+    touch_plane(hull, surface.thickness(), {n, offset, along}, max_gap, scratch_->hull_points,
+                scratch_->of_plane);
+    for (const PlaneTouch& touch : scratch_->of_plane) add({hull.label(touch.p), touch.p, touch.height});
     return;
   }
   const Eigen::Matrix3Xd& p = points_of(a);
@@ -151,6 +145,14 @@ bool ContactFinder::is_convex(int i) const {
   std::optional<bool>& convex = scratch_->parts[at(i)].convex;
   if (!convex) convex = Hull::is_convex(*model_->parts()[at(i)].part, scratch_->values[at(i)]);
   return *convex;
+}
+
+/// Returns the hull of a part that uses its hull. With dynamic parameters its convexity is unknown, because
+/// the test of convexity takes longer than the search from several starts.
+Hull ContactFinder::hull_of(int i) const {
+  const bool convex = has_fixed_shape(i) && is_convex(i);
+  return {*model_->parts()[at(i)].part, scratch_->values[at(i)],
+          convex ? Hull::Convexity::convex : Hull::Convexity::unknown};
 }
 
 bool ContactFinder::is_smooth(const Contact& contact) const {
@@ -191,8 +193,11 @@ void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double
   if (!model_->body().contact.obstacles[number].acts_before(t)) return;
   const Placed& placed = scratch_->parts[at(a)];
   const std::size_t first = found.size();
+  std::optional<Hull> hull;
+  if (!placed.axes && uses_hull(a)) hull.emplace(hull_of(a));
   find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
-                placed.axes, world_box(a), [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
+                placed.axes, hull ? &*hull : nullptr, world_box(a),
+                [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
                (*obstacles_)[number], max_gap, scratch_->mesh_search, found);
   const ContactRule& rule = on_obstacles_[at(a) * obstacles_->size() + number];
   for (std::size_t k = first; k < found.size(); ++k) {

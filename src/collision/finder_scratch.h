@@ -9,10 +9,11 @@
 #include <pliant/collision/box_contacts.h>
 #include <pliant/collision/box_tree.h>
 #include <pliant/collision/find_contacts.h>
-#include <pliant/collision/mesh/find_on_mesh.h>
 
 #include "collision/features/feature_pair.h"
 #include "collision/hull/hull_pair.h"
+#include "collision/hull/touch_plane.h"
+#include "collision/mesh/find_on_mesh.h"
 
 namespace pliant {
 
@@ -74,7 +75,7 @@ struct ContactFinder::Scratch {
   std::map<std::pair<int, int>, PatchPairs> patch_pairs;  ///< by numbers of the parts
   std::vector<CommonNormal> of_features;
   std::vector<Vec3<double>> hull_points;
-  std::vector<CollisionSurface::LowPoint> low_points;
+  std::vector<PlaneTouch> of_plane;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;
   std::vector<int> nodes;

@@ -145,7 +145,7 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
 TEST_CASE("parts that tumble over rough ground neither penetrate it nor are penetrated, and gain no energy",
           "[contact][long]") {
   constexpr int n = 12;
-  for (const std::string shape : {"sphere", "ellipsoid", "box", "capsule"}) {
+  for (const std::string shape : {"sphere", "ellipsoid", "box", "capsule", "cylinder", "superellipsoid"}) {
     INFO(shape);
     Draws draws(100 + shape.size());
     const Mesh ground = sheet(n, 0, [&](double x, double y) -> Vec3<double> {
@@ -162,7 +162,9 @@ TEST_CASE("parts that tumble over rough ground neither penetrate it nor are pene
     MultiBody body;
     Part& part = body.add(make_part(shape, shape, {}, 1000));
     if (shape == "sphere") part.rest({{"r", 0.15}});
-    if (shape == "ellipsoid" || shape == "box") part.rest({{"a1", 0.2}, {"a2", 0.12}, {"a3", 0.07}});
+    if (shape == "ellipsoid" || shape == "box" || shape == "cylinder" || shape == "superellipsoid")
+      part.rest({{"a1", 0.2}, {"a2", 0.12}, {"a3", 0.07}});
+    if (shape == "superellipsoid") part.rest({{"eps1", 0.5}, {"eps2", 1.3}});
     if (shape == "capsule") part.rest({{"r", 0.1}, {"l", 0.15}});
     part.place({0.03, -0.1, 0.5}, Eigen::Quaterniond(0.4, 0.3, -0.6, 0.5).normalized())
         .velocity({0.7, 0.4, 0}, {2, -1, 0});

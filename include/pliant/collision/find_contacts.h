@@ -18,6 +18,8 @@
 
 namespace pliant {
 
+class Hull;
+
 /// The class is not thread-safe: its const functions write to scratch storage that is kept from call to call.
 class ContactFinder {
  public:
@@ -109,6 +111,7 @@ class ContactFinder {
   void place(const State& state, double t, int part) const;
   bool has_fixed_shape(int part) const;
   bool uses_hull(int part) const;
+  Hull hull_of(int part) const;
   bool is_convex(int part) const;
   bool is_round(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;

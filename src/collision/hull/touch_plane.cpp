@@ -8,8 +8,9 @@ constexpr int kRimPoints = 4;
 }  // namespace
 
 void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, double max_gap,
-                 std::vector<Vec3<double>>& points, std::vector<CollisionSurface::LowPoint>& found) {
+                 std::vector<Vec3<double>>& points, std::vector<PlaneTouch>& found) {
   points.clear();
+  found.clear();
   const Vec3<double> down = -plane.normal;
   const double one_point = one_point_distance(thickness);
   const PointLimits limits{one_point, plane.offset - max_gap - one_point};
@@ -17,7 +18,7 @@ void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, d
                        points);
   for (const Vec3<double>& p : points)
     if (const double height = plane.normal.dot(p) + plane.offset; height <= max_gap)
-      found.push_back({hull.label(p), p, height});
+      found.push_back({p, height});
 }
 
 }  // namespace pliant

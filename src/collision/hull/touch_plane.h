@@ -4,8 +4,6 @@
 
 #include <vector>
 
-#include <pliant/collision/collision_surface.h>
-
 #include "hull.h"
 
 namespace pliant {
@@ -17,9 +15,15 @@ struct PlaneInBody {
   Vec3<double> along;   ///< unit vector in the plane; it is fixed to the plane, not to the part
 };
 
-/// Appends the points of a part that touch a plane (Hull::touching_points) and are at most max_gap (m) above
-/// it. thickness: least extent of the part, m. points: scratch storage.
+/// A point where a part touches a plane.
+struct PlaneTouch {
+  Vec3<double> p;  ///< body frame, m
+  double height;   ///< over the plane, m
+};
+
+/// Finds the points of a part that touch a plane (Hull::touching_points) and are at most max_gap (m) above
+/// it; `found` is overwritten. thickness: least extent of the part, m. points: scratch storage.
 void touch_plane(const Hull& hull, double thickness, const PlaneInBody& plane, double max_gap,
-                 std::vector<Vec3<double>>& points, std::vector<CollisionSurface::LowPoint>& found);
+                 std::vector<Vec3<double>>& points, std::vector<PlaneTouch>& found);
 
 }  // namespace pliant

@@ -1,13 +1,16 @@
 // Search on the faces, ridges and corners of an obstacle mesh.
-#include <pliant/collision/mesh/find_on_mesh.h>
+#include "find_on_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include <pliant/collision/ellipsoid_points.h>
 #include <pliant/math/index.h>
+
+#include "sign_change.h"
 
 namespace pliant {
 
@@ -22,6 +25,9 @@ constexpr double kSpacing = 0.4;
 constexpr double kMaxFaceDepth = 0.5;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
+/// Largest distance of a point from a concave edge, in depths of the point behind the face: a point that has
+/// entered a groove is at most about this far from its bottom.
+constexpr double kMaxEdgeDistance = 2;
 /// A face does not support a point behind it that is nearer to a second face. The second face is nearer if
 /// its distance is less than kNearerShare times the depth of the point behind the first face. This rule
 /// applies only if the cosine between the normals of both faces is above kMinCosine.
@@ -37,9 +43,11 @@ constexpr double kSideStep = 1e-7;
 /// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
 /// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
-/// Number of intervals between the samples along an edge, and of the bisections for its lowest point and for
-/// the ends of a level range.
+/// Number of intervals between the samples along an edge, and of the bisections for the ends of a level
+/// range.
 constexpr int kSamples = 12, kHalvings = 48;
+/// Accuracy of the lowest point on an edge, in sizes.
+constexpr double kAccuracy = 1e-15;
 /// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
 constexpr double kSameContact = 0.02, kSameNormal = 0.01;
 
@@ -76,27 +84,58 @@ class Search {
       std::sort(all->begin(), all->end());
       all->erase(std::unique(all->begin(), all->end()), all->end());
     }
-    for (const int f : faces) search_face(f);
+    near_.above.assign(faces.size(), false);
+    for (std::size_t k = 0; k < faces.size(); ++k) near_.above[k] = search_face(faces[k]);
     for (const int e : edges) search_edge(mesh_.edges()[at(e)]);
     for (const int v : vertices) search_vertex(v);
   }
 
  private:
-  void search_face(int number) {
+  /// Adds the contacts on a face. Returns whether the part is above the plane of the face by max_gap or more.
+  bool search_face(int number) {
     const ObstacleMesh::Face& face = mesh_.faces()[at(number)];
     const Vec3<double> n = a_.R.transpose() * face.normal;
     const double offset = face.normal.dot(a_.c - face.point);
     const CollisionSurface::OverPlane field(n, offset);
     if (a_.axes) {
-      const Vec3<double> y = lowest_direction(*a_.axes, n);
-      CollisionSurface::LowPoint low = a_.surface.ellipsoid_point(a_.values, *a_.axes, y);
-      low.height = field.height(low.p);
-      return add_if_supported(number, low);
+      const Vec3<double> p = a_.axes->cwiseProduct(lowest_direction(*a_.axes, n));
+      add_if_supported(number, p, field.height(p));
+      return field.height(p) > max_gap_;
+    }
+    // The least height of a corner of the box bounds that of the part.
+    if (face.normal.dot(a_.box.center() - face.point) - face.normal.cwiseAbs().dot(0.5 * a_.box.sizes()) >
+        max_gap_)
+      return true;
+    if (a_.hull != nullptr) {
+      const Vec3<double> along = a_.R.transpose() * face.normal.unitOrthogonal();
+      touch_plane(*a_.hull, a_.surface.thickness(), {n, offset, along}, max_gap_, near_.hull_points,
+                  near_.of_face);
+      return search_face_by_hull(number);
     }
     const Eigen::Matrix3Xd& p = a_.points();
     const VecX<double> heights = (p.transpose() * n).array() + offset;
     const double lowest = heights.minCoeff();
-    if (lowest > max_gap_ + kSag * size_ || lowest < min_gap_ - kSag * size_) return;
+    if (lowest > max_gap_ + kSag * size_) return true;
+    if (lowest >= min_gap_ - kSag * size_) search_face_by_samples(number, p, heights, field);
+    return false;
+  }
+
+  /// Adds the contacts at the points near_.of_face of a part with a hull. Returns whether there are none. If
+  /// a point is deeper than all contacts, the part has passed through the face, and its other points are no
+  /// contacts.
+  bool search_face_by_hull(int number) {
+    const std::vector<PlaneTouch>& touches = near_.of_face;
+    if (std::all_of(touches.begin(), touches.end(),
+                    [&](const PlaneTouch& touch) { return touch.height >= min_gap_; }))
+      for (const PlaneTouch& touch : touches) add_if_supported(number, touch.p, touch.height);
+    return touches.empty();
+  }
+
+  /// Adds the contacts on a face for a part without a hull. p: the sample points, as columns in the body
+  /// frame, m; heights: their heights over the plane of the face, m.
+  void search_face_by_samples(int number, const Eigen::Matrix3Xd& p, const VecX<double>& heights,
+                              const CollisionSurface::OverPlane& field) {
+    const double lowest = heights.minCoeff();
     Eigen::AlignedBox3d low_box,
         face_box;  // a lowest point can be on the face only if these boxes are near each other
     for (Eigen::Index i = 0; i < heights.size(); ++i)
@@ -107,29 +146,69 @@ class Search {
     if (low_box.exteriorDistance(face_box) > kSpacing * size_ + std::max(0.0, -lowest)) return;
     for (const CollisionSurface::LowPoint& low :
          a_.surface.low_points(a_.values, p, heights, max_gap_, field))
-      add_if_supported(number, low);
+      add_if_supported(number, low.p, low.height);
   }
 
-  void add_if_supported(int face, const CollisionSurface::LowPoint& low) {
-    if (!(low.height <= max_gap_ && low.height >= min_gap_)) return;
-    const Vec3<double> x = a_.c + a_.R * low.p;
-    if (!projects_onto(face, x) || is_nearer_to_others(face, x, low.height)) return;
-    add(low.material, x, mesh_.faces()[at(face)].normal, low.height);
+  /// Adds the contact at a point p (body frame, m) of the part, unless the face does not support this point.
+  /// height: that of p over the plane of the face, m.
+  void add_if_supported(int face, const Vec3<double>& p, double height) {
+    if (!(height <= max_gap_ && height >= min_gap_)) return;
+    const Vec3<double> x = a_.c + a_.R * p;
+    if (!projects_onto(face, x) || is_nearer_to_others(face, x, height)) return;
+    add(x, mesh_.faces()[at(face)].normal, height);
   }
 
-  /// Whether the projection of a point onto the plane of a face is inside the face.
+  /// Whether the part is above the plane of a face of the mesh by max_gap or more, so that it cannot touch an
+  /// edge or a corner of this face.
+  bool is_above(int triangle) const {
+    if (triangle < 0) return false;
+    const auto face = std::lower_bound(near_.faces.begin(), near_.faces.end(), mesh_.face_of(triangle));
+    return face != near_.faces.end() && *face == mesh_.face_of(triangle) &&
+           near_.above[at(static_cast<int>(face - near_.faces.begin()))];
+  }
+  bool is_above(const ObstacleMesh::Edge& edge) const {
+    return is_above(edge.triangle[0]) || is_above(edge.triangle[1]);
+  }
+
+  /// Whether the projection of a point onto the plane of a face is inside the face. At a concave edge the
+  /// face continues behind the adjacent face, so that a corner in a groove touches both faces.
   bool projects_onto(int face, const Vec3<double>& x) const {
-    for (const int t : near_.triangles) {
-      if (mesh_.face_of(t) != face) continue;
-      bool inside = true;
-      for (int k = 0; k < 3 && inside; ++k) {
-        const Vec3<double> corner = mesh_.vertices().col(mesh_.triangles()(k, t)),
-                           e = mesh_.vertices().col(mesh_.triangles()((k + 1) % 3, t)) - corner;
-        inside = mesh_.normal(t).dot(e.cross(x - corner)) >= -kInsideTolerance * size_ * e.norm();
-      }
-      if (inside) return true;
+    return std::any_of(near_.triangles.begin(), near_.triangles.end(), [&](int t) {
+      return mesh_.face_of(t) == face && (projects_into(t, x) || is_behind_concave_edge(t, x));
+    });
+  }
+
+  bool projects_into(int t, const Vec3<double>& x) const {
+    bool inside = true;
+    for (int k = 0; k < 3 && inside; ++k) {
+      const Vec3<double> corner = mesh_.vertices().col(mesh_.triangles()(k, t)),
+                         e = mesh_.vertices().col(mesh_.triangles()((k + 1) % 3, t)) - corner;
+      inside = mesh_.normal(t).dot(e.cross(x - corner)) >= -kInsideTolerance * size_ * e.norm();
     }
-    return false;
+    return inside;
+  }
+
+  /// Whether a point is behind triangle t and its neighbour at a concave edge, and this edge is the part of
+  /// both triangles that is nearest to the point. The point must be near the edge, and the ends of the edge
+  /// are excluded if a sharp edge ends there: elsewhere the point may be outside the solid.
+  bool is_behind_concave_edge(int t, const Vec3<double>& x) const {
+    const double tolerance = kInsideTolerance * size_;
+    auto depth = [&](int triangle) -> double {
+      return mesh_.normal(triangle).dot(mesh_.vertices().col(mesh_.triangles()(0, triangle)) - x);
+    };
+    const Vec3<double> nearest = mesh_.nearest(t, x);
+    if ((nearest - x).norm() > kMaxEdgeDistance * depth(t) + tolerance) return false;
+    const std::array<int, 3>& edges = mesh_.edges_of(t);
+    return std::any_of(edges.begin(), edges.end(), [&](int number) {
+      const ObstacleMesh::Edge& edge = mesh_.edges()[at(number)];
+      const int other = edge.triangle[0] == t ? edge.triangle[1] : edge.triangle[0];
+      if (edge.sharp || other < 0 || mesh_.face_of(other) == mesh_.face_of(t)) return false;
+      const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]);
+      if (!(mesh_.along(edge).cross(nearest - start).norm() < tolerance)) return false;
+      for (const int v : edge.vertex)
+        if (!mesh_.corner(v).empty() && (mesh_.vertices().col(v) - nearest).norm() < tolerance) return false;
+      return depth(other) > -tolerance && (mesh_.nearest(other, x) - nearest).norm() < tolerance;
+    });
   }
 
   /// Whether a point behind a face has entered the mesh through another face.
@@ -171,6 +250,7 @@ class Search {
   // Longer than 60 lines, because the stages of the search along the edge share the parametrisation of the
   // edge and its range inside the box.
   void search_edge(const ObstacleMesh::Edge& edge) {
+    if (is_above(edge)) return;
     const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]),
                        edge_vector = mesh_.vertices().col(edge.vertex[1]) - start;
     const double length = edge_vector.norm();
@@ -209,15 +289,8 @@ class Search {
     }
     double low = from + std::max(best - 1, 0) * step, high = from + std::min(best + 1, kSamples) * step;
     if (!(least * a_.surface.thickness() <= 2 * std::max(max_gap_, 0.0) + (high - low))) return;
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = 0.5 * (low + high), rate = slope(x(middle)).dot(e);
-      if (rate == 0) {
-        low = high = middle;
-        break;
-      }
-      (rate > 0 ? high : low) = middle;
-    }
-    const double lowest = 0.5 * (low + high);
+    const double lowest =
+        sign_change(low, high, kAccuracy * size_, [&](double s) { return slope(x(s)).dot(e); });
     // The slope along the edge changes its sign at the minimum. At a kink, the gradient of the contact is the
     // weighted mean of both one-sided gradients. The weights are chosen so that its slope along the edge is
     // zero.
@@ -249,6 +322,8 @@ class Search {
   }
 
   void search_vertex(int v) {
+    const std::vector<int>& meet = mesh_.corner(v);
+    if (std::any_of(meet.begin(), meet.end(), [&](int e) { return is_above(mesh_.edges()[at(e)]); })) return;
     const Vec3<double> x = mesh_.vertices().col(v);
     if (!box_.contains(x) || !(level(x) * a_.surface.thickness() <= 2 * std::max(max_gap_, 0.0))) return;
     const std::optional<Contact> contact = contact_at(x, slope(x));
@@ -256,19 +331,16 @@ class Search {
     if (mesh_.points_outward(v, contact->normal, kMaxOutsideSine)) add(*contact);
   }
 
-  void add(Contact contact) {
-    contact.a.material = a_.part.label(into_a(contact.x), a_.values);
-    add_one(contact);
-  }
-  void add(const Material<double>& material, const Vec3<double>& x, const Vec3<double>& normal, double gap) {
+  void add(const Vec3<double>& x, const Vec3<double>& normal, double gap) {
     Contact contact;
-    contact.a.material = material;
     contact.x = x;
     contact.normal = normal;
     contact.gap = gap;
-    add_one(contact);
+    add(contact);
   }
-  void add_one(const Contact& contact) {
+  /// Adds a contact, or replaces one at the same place that is less deep.
+  void add(Contact contact) {
+    contact.a.material = a_.part.label(into_a(contact.x), a_.values);
     for (std::size_t k = first_; k < found_.size(); ++k) {
       Contact& other = found_[k];
       if ((other.x - contact.x).norm() > kSameContact * size_ ||

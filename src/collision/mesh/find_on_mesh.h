@@ -12,6 +12,8 @@
 #include <pliant/collision/contact.h>
 #include <pliant/collision/mesh/obstacle_mesh.h>
 
+#include "collision/hull/touch_plane.h"
+
 namespace pliant {
 
 /// A part and its pose.
@@ -22,14 +24,21 @@ struct PlacedSurface {
   const Vec3<double>& c;                    ///< origin of the frame, m, world
   const Mat3<double>& R;                    ///< body to world
   const std::optional<Vec3<double>>& axes;  ///< semi-axes if the part is an ellipsoid, m
-  Eigen::AlignedBox3d box;                  ///< contains the part, world
-  /// Returns the sample points of the surface, body frame, m; not called for ellipsoids.
+  const Hull* hull;  ///< support points of the part; nullptr for ellipsoids and for parts without a hull
+  Eigen::AlignedBox3d box;  ///< contains the part, world
+  /// Returns the sample points of the surface, body frame, m; called only if the part is no ellipsoid and has
+  /// no hull.
   std::function<const Eigen::Matrix3Xd&()> points;
 };
 
-/// Scratch storage of a search: the triangles near a part, and their faces, sharp edges and corners.
+/// Scratch storage of a search.
 struct MeshSearch {
+  /// The triangles near a part, and their faces, sharp edges and corners, in ascending order.
   std::vector<int> triangles, faces, edges, vertices;
+  std::vector<bool>
+      above;  ///< of each face in `faces`: whether the part is above its plane by max_gap or more
+  std::vector<Vec3<double>> hull_points;
+  std::vector<PlaneTouch> of_face;
 };
 
 /// Appends the contacts whose gap is at most max_gap (m). Sets a.material, x, normal and gap of each contact;
