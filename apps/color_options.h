@@ -21,8 +21,8 @@ void add_color_by(CLI::App& command, ColorOptions& options);
 /// Throws CLI::ValidationError unless the range is empty, or increasing with a finite difference.
 void check_colors(const ColorOptions& options);
 /// Sets the colouring of a scene by the options. Without --color-by, the scene does not change. "part"
-/// removes the colouring. A quantity other than that of the scene removes the range of the scene, and keeps
-/// the list of coloured parts. --color-range then sets the range.
+/// removes the colouring. A quantity that differs from the quantity of the scene removes the range of the
+/// scene, and keeps the list of coloured parts. --color-range then sets the range.
 void apply_colors(const ColorOptions& options, pliant::Scene& scene);
 
 }  // namespace pliant_cli

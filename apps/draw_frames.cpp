@@ -30,7 +30,7 @@ extern "C" void on_graphics_crash(int number) {
   ::_exit(printed ? kResources : kFileSystem);
 }
 
-/// While the object exists, crashes are reported as those of the graphics library. Libraries of OpenGL and
+/// While the object exists, crashes are reported as crashes of the graphics library. Libraries of OpenGL and
 /// their compilers crash or abort if they cannot allocate memory.
 class GraphicsCrashes {
  public:

@@ -73,7 +73,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 // Returns the messages about the words of the command line that CLI11 could not assign; empty if there are
-// none. Every message but the first begins with a line break and "pliant: error: ".
+// none. Every message except the first begins with a line break and "pliant: error: ".
 std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
   std::vector<std::string> words = app.remaining(true);
   if (&command == &app && words.size() > 1) words.resize(1);  // the first word should be a command
@@ -95,7 +95,7 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
 
 constexpr const char* kOutOfMemoryText = "out of memory; reduce the resolution or the number of parts";
 
-/// Ends the program at once. The user can then continue a run with --resume. Nothing here allocates memory.
+/// Ends the program at once, without an allocation of memory. The user can then continue a run with --resume.
 [[noreturn]] void end_without_memory() {
   std::fprintf(stderr, "pliant: error: %s\n", kOutOfMemoryText);
   std::_Exit(kResources);

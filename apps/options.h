@@ -1,5 +1,5 @@
-// Validators of option values, and parsers of sizes and frames. A validator accepts a text only if all of it
-// is valid. The locale has no influence.
+// Validators of option values, and parsers of sizes and frames. A validator accepts a text only if the whole
+// text is valid. The locale has no influence.
 #pragma once
 
 #include <string>

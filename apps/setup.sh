@@ -2,8 +2,8 @@
 # build with a preset of CMake. Source this file from POSIX sh in the folder of the project.
 # shellcheck shell=sh disable=SC2034,SC2046,SC2086  # lists are words to split
 
-# Durations on 2 cores in a new folder, in minutes. README.md states the first number. README.md and tests/README.md state
-# the sum of the other two.
+# Durations on 2 cores in a new folder, in minutes. README.md states the first duration. README.md and tests/README.md state
+# the sum of the second and the third.
 pliant_minutes_program="4 to 7"
 pliant_minutes_everything="9 to 15"
 pliant_minutes_tests=20
@@ -74,8 +74,8 @@ pliant_can_install() {
   [ "$(id -u)" -eq 0 ] || { command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; }
 }
 
-# pliant_compiler: prints the package of the compiler, as a word of a list. CXX names an installed compiler. Without root
-# and sudo, an installed g++ is good enough.
+# pliant_compiler: prints the package of the compiler, as a word of a list, or nothing if CXX names an installed compiler.
+# Without root and sudo, an installed g++ is sufficient.
 pliant_compiler() {
   if [ -n "${CXX:-}" ]; then return; fi
   if pliant_can_install; then echo clang; else echo "clang|g++"; fi
@@ -120,7 +120,7 @@ pliant_jobs() {
 }
 
 # pliant_configure PRESET [option...]: configures build/PRESET. A new folder uses the compiler CXX if this variable is set,
-# or else Clang if it is installed: it needs two thirds of the time of GCC. Ninja and ccache are used if they are installed.
+# or else Clang if it is installed, because Clang needs two thirds of the time of GCC. Ninja and ccache are used if installed.
 # ccache does not store objects that use precompiled headers, so a build with ccache uses no precompiled headers.
 pliant_configure() {
   preset=$1

@@ -2,10 +2,11 @@
 //
 //   assembly_bench [FOLDER] [LAYOUTS]     writes assembly_bench.csv to FOLDER and a table to standard output
 //
-// A layout is a tree of ellipsoids on ball joints; the first ellipsoid is connected to the world. Their
-// poses are random, within a cube whose half side is a given number of body lengths (column distance). Some
-// layouts have up to one more joint for every four parts. These joints close loops, and it may be impossible
-// to satisfy them. LAYOUTS: number of layouts of each kind (1000). For 100 parts there are a tenth as many.
+// A layout is a tree of ellipsoids on ball joints; the first ellipsoid is connected to the world. The poses
+// of the ellipsoids are random. Their centres are in a cube about the origin, whose half side is a number of
+// body lengths (column distance). Some layouts have up to one more joint for every four parts. These joints
+// close loops, and may be impossible to satisfy. LAYOUTS: number of layouts of each kind (default: 1000).
+// Kinds with 100 parts have a tenth as many layouts.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -31,6 +32,8 @@ namespace {
 
 class Layout {
  public:
+  /// Adds a random layout to a body. loops: largest number of joints that close loops. distance: half side of
+  /// the cube of the centres, in body lengths.
   Layout(MultiBody& body, int parts, int loops, double distance, unsigned seed) : random_(seed) {
     std::vector<const Part*> placed;
     for (int i = 0; i < parts; ++i) {
@@ -61,11 +64,14 @@ class Layout {
   std::mt19937 random_;
 };
 
+/// Sums and maxima over the layouts of a kind. Iterations and gaps (m) are those of layouts whose joints
+/// close.
 struct Statistics {
   int layouts = 0, closed = 0, max_iterations = 0;
   double iterations = 0, seconds = 0, max_gap = 0;
 };
 
+/// Assembles `layouts` random layouts of one kind.
 Statistics run(int parts, int loops, double distance, int layouts) {
   Statistics result;
   for (int i = 0; i < layouts; ++i) {

@@ -1,12 +1,12 @@
-// The cost of soft contact by the number of triangles of each balloon: a balloon that falls onto a plane, and
-// nine balloons on strings that collide.
+// Run time of soft contact as a function of the number of triangles of each balloon. The systems are a
+// balloon that falls onto a plane, and nine balloons on strings that collide.
 //
 //   balloon_bench [FOLDER] [MAX]   writes balloon_bench.csv to FOLDER and a table to standard output; MAX:
-//   the largest number of triangles of a balloon (5120)
+//   the largest number of triangles of a balloon (default: 5120)
 //
 // The balloon has a radius of 0.1 m and consists of 1 mm of rubber with E = 1e7 Pa. It falls from a height of
-// half its radius; the run ends after 0.5 s. The nine balloons are of this kind, or of 0.5 mm with E = 1e5 Pa
-// and a pressure of 30 Pa; their runs end after 1 s.
+// half its radius; the run ends after 0.5 s. The nine balloons are equal to this balloon, or have 0.5 mm of
+// rubber with E = 1e5 Pa and a pressure of 30 Pa. Their runs end after 1 s.
 // The real-time factor is simulated time / processor time, with one thread.
 #include <algorithm>
 #include <cmath>
@@ -28,9 +28,10 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // step / largest stable step
+constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // m, kg/m^3, step / largest stable step
     kMaxStep = 1e-3;                                            // s
 
+/// beta: damping proportional to the stiffness. drag: damping of all motion of the balloons.
 struct System {
   const char* name;
   double E, thickness, pressure, beta, drag, duration;  ///< Pa, m, Pa, s, 1/s, s

@@ -1,29 +1,30 @@
-// The cost of contact: time per body and step. Solids of every shape, deformed ones included, fall onto a
-// plane, as a heap of five layers, or into the hollows of a mesh; or springs press two of them together
-// (contact_systems.h). The runs last from the first impacts until most bodies are at rest. Towers and
-// pyramids of ten boxes stand. The program also measures the exponent with which the cost grows with the
-// number of bodies, and the time of each stage.
+// Run time of contact per body and step. Solids of every shape, with and without deformations, fall onto a
+// plane side by side or as a heap of five layers, or fall into the hollows of a mesh. In other systems
+// springs press pairs of solids together, or towers and pyramids of ten boxes stand (contact_systems.h). The
+// runs last from the first impacts until most bodies are at rest. The program also measures the exponent with
+// which the run time grows with the number of bodies, and the time of each stage.
 //
 //   contact_bench [FOLDER] [MAX] [NAME] [SECONDS] [TOLERANCE]
 //
 // Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
-// largest number of bodies (10000). NAME: measures only the systems whose name contains this text. SECONDS: a
-// system is not measured with more bodies if their run would probably take longer than this time (60).
-// TOLERANCE: ContactSettings::tolerance; with 0, contact has no tolerance (0).
+// largest number of bodies (default: 10000). NAME: measures only the systems whose name contains this text.
+// SECONDS: if the run with ten times as many bodies would probably take longer than this time, the system is
+// not measured with more bodies (default: 60). TOLERANCE: ContactSettings::tolerance; 0: contact has no
+// tolerance (default).
 //
 // Columns of the table, with the names of the columns of the files if they differ:
 //   step               mean time of a step in the whole run (step_us_per_body)
 //   at rest            mean time of a step in the last tenth of the run (still_step_us_per_body)
 //   warm               a step at the end that is warm-started from the contact cache (begun_us)
-//   cold               a step at the end without the cache (anew_us); in a run, the step after ten warm ones
+//   cold               a step at the end without the cache (anew_us); in a run, one step in eleven is cold
 //   asleep             a step at the end in which all bodies sleep, an option of scenes
 //   motion             stage of a step at the end: the method of integration without contact
 //   near, find, solve  stages of a step at the end: candidate pairs, contacts, impulses
 //   deepest            largest depth of a contact in the run / 0.1 m (deepest_in_sizes)
 //   residual           largest residual of a contact solution, m/s
-//   fallbacks          clusters of contacts without a solution, see step_counters.h
+//   fallbacks          solutions of contact clusters repeated with compliant contacts (step_counters.h)
 //
-// The stages are timed one by one in separate loops, so that the processor caches contain their data.
+// The stages are timed one by one in separate loops, so their data are in the processor caches.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -60,7 +61,7 @@ struct Cost {
   long fallbacks = 0;
 };
 
-/// Simulates the whole run and measures its steps. Returns the time of the run, s.
+/// Simulates the whole run and measures its steps. Returns the processor time of the run, s.
 double measure_run(Simulation& simulation, Cost& cost) {
   const int steps = static_cast<int>(std::lround(kDuration / kStep)), resting = steps / 10;
   double seconds = 0, resting_seconds = 0;
@@ -82,7 +83,7 @@ double measure_run(Simulation& simulation, Cost& cost) {
   return seconds;
 }
 
-/// Returns the time of a call in microseconds per body.
+/// Returns the processor time of a call in microseconds per body.
 template <class Act>
 double time_of(const Cost& cost, Act&& act) {
   return bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5) * 1e6 / cost.bodies;
@@ -95,7 +96,7 @@ double time_of_step(const Cost& cost, Simulation& simulation, const State& from)
   });
 }
 
-/// Measures the stages of a step from the present state.
+/// Measures the stages of a step that starts in a state.
 void measure_stages(Simulation& simulation, const State& state, Cost& cost) {
   const ContactFinder& finder = simulation.contact()->finder();
   const double t = state.time();
@@ -116,8 +117,8 @@ void measure_stages(Simulation& simulation, const State& state, Cost& cost) {
   });
 }
 
-/// Measures a system of n bodies. tolerance: ContactSettings::tolerance, or 0 for none. seconds: receives the
-/// time of the run.
+/// Measures a system of n bodies. tolerance: ContactSettings::tolerance; 0: contact has no tolerance.
+/// seconds: receives the processor time of the run, s.
 Cost measure(const System& system, int n, double tolerance, double& seconds) {
   MultiBody body, without_contact, sleepy;
   for (MultiBody* each : {&body, &without_contact, &sleepy}) {

@@ -1,4 +1,4 @@
-// The systems of contact_bench: solids of every shape and with every kind of deformation, and how they touch.
+// The systems of contact_bench: solids of every shape, some of them deformed, in several layouts.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,8 @@
 
 namespace pliant::bench {
 
-/// A kind of solid: shape, chain of deformations, and rest values for three numbers between 0 and 1.
+/// A kind of solid: its shape, its chain of deformations, and a function that returns the rest values of its
+/// parameters. The arguments of the function are three quasi-random numbers in [0, 1), which vary the sizes.
 struct Kind {
   const char *name, *shape;
   std::vector<std::string> chain;
@@ -35,7 +36,7 @@ inline Part::Named with(Part::Named rest, const char* name, double value) {
   rest.push_back({name, value});
   return rest;
 }
-template <int eps1, int eps2>  // in tenths
+template <int eps1, int eps2>  // exponents in tenths
 Part::Named superquadric(double a, double b, double c) {
   return with(with(axes(a, b, c), "eps1", 0.1 * eps1), "eps2", 0.1 * eps2);
 }
@@ -80,8 +81,8 @@ inline const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// plane: side by side; heap: five layers; pairs: two bodies that a spring pulls together, without gravity;
-/// bowl: ten bodies in each hollow of a mesh; towers and pyramids of ten boxes.
+/// plane: side by side on a plane; heap: five layers on a plane; pairs: two bodies that a spring pulls
+/// together, without gravity; bowl: ten bodies in each hollow of a mesh; towers, pyramids: of ten boxes each.
 enum class Layout { plane, heap, pairs, bowl, towers, pyramids };
 
 struct System {
@@ -105,12 +106,12 @@ inline double spread(int i, double ratio) {
   return std::fmod((i + 1) * ratio, 1.0);
 }
 
-/// Returns the number of columns of a square arrangement of n bodies or more.
+/// Returns the number of columns of the smallest square arrangement with room for n bodies.
 inline int columns(double n) {
   return static_cast<int>(std::ceil(std::sqrt(n)));
 }
 
-/// Adds solid number i, turned, within 0.11 m of a place.
+/// Adds solid number i in a quasi-random orientation, at most 0.11 m from `place` (world, m).
 inline Part& add_solid(MultiBody& body, const Kind& kind, int i, const Vec3<double>& place) {
   const double a = spread(i, 0.6180339887498949), b = spread(i, 0.7548776662466927),
                c = spread(i, 0.5698402909980532);
@@ -123,10 +124,10 @@ inline Part& add_solid(MultiBody& body, const Kind& kind, int i, const Vec3<doub
   return part;
 }
 
-/// Adds n solids in layers over a plane. They start apart from each other.
+/// Adds n solids in layers over a plane. The solids do not touch each other at the start.
 inline void add_layers(MultiBody& body, const Kind& kind, int n, int layers) {
   const int across = columns(static_cast<double>(n) / layers);
-  // Corners and rims reach farther than the axes.
+  // Undeformed ellipsoids need less room than solids with corners, rims or deformations.
   const bool is_round = kind.chain.empty() && std::string(kind.shape) == "ellipsoid";
   const double apart = is_round ? 0.25 : 0.45, above = is_round ? 0.35 : 0.45;
   for (int i = 0; i < n; ++i) {
@@ -136,7 +137,7 @@ inline void add_layers(MultiBody& body, const Kind& kind, int n, int layers) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
-/// Adds n / 2 pairs. A damped spring between their centres presses the bodies of a pair together.
+/// Adds n / 2 pairs. A damped spring between the centres presses the bodies of a pair together.
 inline void add_pairs(MultiBody& body, const Kind& kind, int n) {
   const int across = columns(n / 2.0);
   body.gravity.setZero();
@@ -149,9 +150,9 @@ inline void add_pairs(MultiBody& body, const Kind& kind, int n) {
   body.contact.active = true;
 }
 
-/// Adds n solids over a mesh with a hollow of 1 m x 1 m for each ten of them, 0.3 m deep.
+/// Adds a mesh with hollows of 1 m x 1 m that are 0.3 m deep, and n solids, ten of them above each hollow.
 inline void add_bowls(MultiBody& body, const Kind& kind, int n) {
-  constexpr int cells = 12;  // of a hollow, in each direction
+  constexpr int cells = 12;  // number of cells of a hollow in x and in y
   const int across = columns(n / 10.0), side = across * cells + 1;
   Eigen::Matrix3Xd x(3, side * side);
   for (int i = 0; i < x.cols(); ++i) {
@@ -173,6 +174,7 @@ inline void add_bowls(MultiBody& body, const Kind& kind, int n) {
   }
 }
 
+/// Adds cube number i. centre: in units of half the side of a cube.
 inline void add_box(MultiBody& body, int i, const Vec3<double>& centre) {
   constexpr double half = 0.05;
   body.add(make_part("body" + std::to_string(i), "box", {}, 1000))
@@ -197,7 +199,7 @@ inline void add_pyramids(MultiBody& body, int n) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
-/// Builds a system of n bodies, a multiple of 10.
+/// Adds a system of n bodies to a MultiBody. n: a multiple of 10.
 inline void build(MultiBody& body, const System& system, int n) {
   switch (system.layout) {
     case Layout::plane:

@@ -12,7 +12,7 @@ struct Counted {
   static inline long operations = 0;
 
   Counted() = default;
-  Counted(double v) : value(v) {}  // NOLINT(google-explicit-constructor): scalars are numbers
+  Counted(double v) : value(v) {}  // NOLINT(google-explicit-constructor): formulas contain numbers
   static Counted counted(double v) {
     ++operations;
     return v;

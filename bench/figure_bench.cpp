@@ -1,5 +1,5 @@
-// The scenes of the paper's figures on one core: the real-time factor (simulated time / clock time), the
-// shares of the stages in the run time, and the largest depth of a contact / size of the smaller body,
+// Measures the scenes of the paper's figures on one core: the real-time factor (simulated time / clock time),
+// the shares of the stages in the run time, and the largest depth of a contact / size of the smaller body,
 // sampled 60 times per simulated second. Writes CSV to standard output.
 //
 //   figure_bench SCENES_FOLDER [FOLDER]     writes figure_bench.csv to FOLDER as well

@@ -1,8 +1,8 @@
-// The linearly implicit method on solids. One table has, for each law, size and kind of factorisation, the
-// times of a step and of the factorisation of its matrix. For comparison it has the times of a step of RK4
-// and of one evaluation of the accelerations. The other table has processor time against error for stiff
-// solids that swing on a joint: RK4 at 0.9 of its largest stable step, and the implicit method at 1 to 1000
-// times this largest step. Writes CSV to standard output.
+// Measures the linearly implicit method on solids. One table has, for each law, size and kind of
+// factorisation, the times of a step and of the factorisation of its matrix. For comparison the table has the
+// times of a step of RK4 and of one evaluation of the accelerations. The other table has processor time
+// against error for stiff solids that swing on a joint, by RK4 with 0.9 of its largest stable step, and by
+// the implicit method with 1 to 1000 times this largest step. Writes CSV to standard output.
 //
 //   implicit_bench [FOLDER]     writes implicit_cost.csv and implicit_work_error.csv to FOLDER as well
 #include <chrono>
@@ -32,13 +32,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The cost of a factorisation.
+/// The cost of the factorisation of a sparse matrix A = L L^T.
 struct Measured {
   Eigen::Index unknowns = 0, entries = 0;  // rows of the matrix; nonzeros of its factor L
   double analysis = 0, factorisation = 0;  // times of the last calls, s
 };
 
-/// A sparse factor that measures its cost.
+/// A sparse factor that measures its own cost.
 class MeasuredFactor final : public SparseFactor {
  public:
   MeasuredFactor(std::unique_ptr<SparseFactor> factor, Measured& measured)
@@ -86,6 +86,8 @@ void add_pendulum(MultiBody& body, const std::string& law, int resolution, doubl
   body.ball("top", world(0, 0, 0), point(part, kPi / 2, 0));
 }
 
+/// Returns the processor time of a step at half the explicit limit, s. factor: kind of the factorisation.
+/// measured: receives its cost.
 double step_time(const std::string& law, int resolution, const std::string& method, const std::string& factor,
                  Measured& measured) {
   MultiBody body;
@@ -123,7 +125,7 @@ void measure_cost(const std::string& folder) {
       const double evaluation = evaluation_time(law, resolution),
                    rk4 = step_time(law, resolution, "rk4", "eigen", unused);
       for (const std::string factor : {"eigen", "simplicial", "cholmod"}) {
-        if (factor != "cholmod" && resolution > 6) continue;  // would run for minutes
+        if (factor != "cholmod" && resolution > 6) continue;  // these factorisations would take minutes
         Measured measured;
         const double implicit = step_time(law, resolution, "linearly_implicit", factor, measured);
         char line[256];
@@ -165,7 +167,7 @@ void measure_error(const std::string& folder) {
     MultiBody body;
     add_pendulum(body, law, 3, E);
     const double limit = largest_stable_step(Simulation(body, "rk4"));
-    // The reference: RK4 at half of the step that is measured below.
+    // The reference: RK4 with half of the step that is measured below.
     const Outcome exact = run("rk4", 0.45 * limit);
     auto measure = [&, law = law, E = E](const char* method, double times) {
       const Outcome outcome = run(method, times * limit);

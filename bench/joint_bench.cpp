@@ -1,18 +1,20 @@
-// The cost of joints: time per link of an evaluation of the accelerations, of a stage of RK4 and of a step,
-// for chains, trees, nets, rings and stars of growing size; the exponents of the growth, and the share of
-// each stage.
+// Run time per link of an evaluation of the accelerations, of a stage of RK4 and of a step, for chains,
+// trees, nets, rings and stars of growing size. The program also measures the exponents with which the time
+// grows with the number of links, and the time of each stage of an evaluation.
 //
 //   joint_bench [FOLDER]     writes joint_bench.csv and joint_exponents.csv to FOLDER, a table to standard
 //   output
 //
 // An evaluation of the accelerations has these stages: parts (timed with the same parts without joints),
 // rows (C_q and bias), factor (M^-1 C_q^T, W_c = C_q M^-1 C_q^T and its factor), solve (lambda and
-// accelerations), and a remainder with the name "rest" (points of joints, powers). A stage of RK4 needs
-// Dynamics::rates() only, which is faster for rigid islands (rigid parts that ball joints connect). Both
-// joint solvers, blocks and augmented matrix, are timed, and the one that "auto" selects is named. The time
-// of projection is that of a step minus four stages (RK4) or one evaluation (Euler). The stages are timed one
-// by one in separate loops, with warm caches. Every time is the minimum over rounds, and each round measures
-// all sizes: other load of the machine lasts longer than one measurement and would distort the growth.
+// accelerations), and a remainder with the name "rest" (points of joints, powers of forces). A stage of RK4
+// needs Dynamics::rates() only, which is faster for rigid islands (rigid parts that ball joints connect). An
+// evaluation is also timed with each joint solver: the blocks of W_c, and the augmented matrix of Eq. (14).
+// The column auto has the solver that the default choice of JointSolver selects. The time of projection is
+// the time of a step minus four stages (RK4) or one evaluation (Euler). The stages are timed one by one in
+// separate loops, so their data are in the processor caches. Every time is the minimum over rounds, and each
+// round measures all sizes. A longer load by other programs then does not slow one size only, which would
+// change the exponents.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,7 +38,7 @@ namespace {
 
 struct System {
   const char* name;
-  bool soft;
+  bool soft;  ///< whether the semi-axes of the links are dynamic
   std::function<void(Linkage&, int)> build;
   std::vector<int> sizes;  ///< arguments of build
 };
@@ -48,7 +50,7 @@ struct Cost {
   double evaluation, stage, rk4_step, euler_step;
   double parts, rows, factor, solve;
   double blocks, augmented;  ///< times of an evaluation with each solver
-  bool auto_is_augmented;    ///< whether the choice "auto" selects "augmented"
+  bool auto_is_augmented;    ///< whether the default choice selects the augmented matrix
 
   void minimise_with(const Cost& other) {
     for (double Cost::*time :

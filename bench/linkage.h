@@ -26,7 +26,8 @@ class Linkage {
   explicit Linkage(MultiBody& body, bool soft = false, bool with_joints = true)
       : body_(body), soft_(soft), with_joints_(with_joints) {}
 
-  /// Adds an ellipsoid whose near tip is at `near`, with its long axis along the first axis of R.
+  /// Adds an ellipsoid whose long axis has the direction of the first axis of R. near: position of the end of
+  /// this axis at -a1 (the near tip), world, m.
   Part& link(const Vec3<double>& near, const Eigen::Quaterniond& R) {
     auto& part = body_.add<Primitive<Ellipsoid>>("part" + std::to_string(body_.parts().size()));
     part.rest({{"a1", kLinkAxes[0]}, {"a2", kLinkAxes[1]}, {"a3", kLinkAxes[2]}});
@@ -89,8 +90,8 @@ inline void tree(Linkage& linkage, int n) {
   }
 }
 
-/// Adds n links as the sides of a regular polygon in a vertical plane. One of its corners hangs from the
-/// origin.
+/// Adds n links as the sides of a regular polygon in a vertical plane. A ball joint connects one corner of
+/// the polygon with the origin.
 inline void ring(Linkage& linkage, int n) {
   std::vector<const Part*> links;
   Vec3<double> corner = Vec3<double>::Zero();
@@ -104,8 +105,8 @@ inline void ring(Linkage& linkage, int n) {
     linkage.connect(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
 }
 
-/// Adds a sphere whose centre is joined to the origin, and n links, connected to points distributed over the
-/// surface of the sphere.
+/// Adds a sphere whose centre is joined to the origin, and n links that point outwards. Ball joints connect
+/// the links with points all over the surface of the sphere.
 inline void star(Linkage& linkage, int n) {
   const double radius = 0.3;
   const Part& hub = linkage.sphere(Vec3<double>::Zero(), radius);

@@ -1,8 +1,8 @@
 // Time of writing mesh files of a hundred thousand triangles with normals. Prints one CSV row for each
 // format. The target for OBJ is 20 ms.
 //
-//   obj_bench [ROUNDS] [FOLDER]     ROUNDS: number of measurements (20); FOLDER: for the temporary files (the
-//   system's temporary folder)
+//   obj_bench [ROUNDS] [FOLDER]     ROUNDS: number of measurements (default: 20); FOLDER: folder of the
+//   temporary files (default: the temporary folder of the system)
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -25,7 +25,7 @@ struct Times {
 Times measure(int rounds, const std::function<void()>& task) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> ms;
-  for (int i = 0; i <= rounds; ++i) {  // the first round only warms up
+  for (int i = 0; i <= rounds; ++i) {  // the first round fills the caches and is not measured
     const Clock::time_point start = Clock::now();
     task();
     if (i > 0) ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());

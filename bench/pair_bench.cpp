@@ -1,17 +1,18 @@
-// The cost of contact search for two bodies. Pairs of ellipsoids, capsules, cylinders and cones of about 0.1
-// m are placed in random poses, and the second body then moves a little from pose to pose, as in the steps of
-// a simulation. The program bench/peers/native/coal_peer measures the same poses with the library coal.
+// Run time of contact search for two bodies. Pairs of ellipsoids, capsules, cylinders and cones of about 0.1
+// m are placed in random poses. The second body then moves a little from pose to pose, as in the steps of a
+// simulation. The program bench/peers/native/coal_peer measures the library coal in the same poses.
 //
 //   pair_bench FOLDER
 //
 // Writes pair_bench.csv and pair_poses.csv to FOLDER and a table to standard output. A query is a search of
-// ContactFinder in a model of two parts: their boxes, the gap, and all contact points. It is measured
-// in two orders of the poses:
-//   cold  each query follows one at another place, so that nothing is known from the last query
-//   warm  each query follows one at nearly the same pose
-// Columns of pair_poses.csv: pair, band, sequence, shape and three sizes of each body (semi-axes of an
-// ellipsoid; radius twice and half height; the half height of a capsule is that of its straight side), centre
-// and quaternion w x y z of each body, gap (m). A sequence contains consecutive poses.
+// ContactFinder in a model of two parts: it computes the bounding boxes, the gap and all contact points. The
+// time of a query is measured in two orders of the poses:
+//   cold  successive queries are at poses of different sequences
+//   warm  successive queries are at successive poses of a sequence, which are nearly equal
+// Columns of pair_poses.csv: pair, band, sequence, shape and three sizes (m) of each body, centre (m) and
+// quaternion w x y z of each body, gap (m). The sizes of an ellipsoid are its semi-axes. The sizes of other
+// bodies are the radius, again the radius, and half the height; for a capsule the height is that of its
+// straight side. A sequence contains successive poses.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,7 +36,7 @@ namespace {
 constexpr int kSequences = 100, kPoses = 8;     // sequences of a pair and band, poses of a sequence
 constexpr double kTravel = 1e-3, kTurn = 1e-2;  // motion from pose to pose, m and rad
 constexpr double kMaxGap = 0.1;                 // m, larger than the gap of every pose
-constexpr double kMaxDistance = 1;              // of the centres, m
+constexpr double kMaxDistance = 1;              // largest distance of the centres, m
 
 struct Solid {
   const char* shape;
@@ -47,7 +48,8 @@ const std::array<Solid, 4>& solids() {
       {{"ellipsoid", {0.1, 0.07, 0.05}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}}},
        {"capsule", {0.05, 0.05, 0.06}, {{"r", 0.05}, {"l", 0.12}}},
        {"cylinder", {0.06, 0.06, 0.09}, {{"a1", 0.06}, {"a2", 0.06}, {"a3", 0.09}}},
-       // The radius of a cone at half height is half the radius of its base.
+       // The parameters a1 and a2 of a cone are its radius at half height, which is half the radius of its
+       // base.
        {"cone", {0.08, 0.08, 0.08}, {{"a1", 0.04}, {"a2", 0.04}, {"a3", 0.08}, {"t", -1}}}}};
   return all;
 }
@@ -61,7 +63,7 @@ constexpr Band kBands[] = {{"touching", -2e-3, 2e-3}, {"near", 5e-3, 5e-2}};
 
 class Random {
  public:
-  /// A number in [least, largest).
+  /// Returns a random number in [least, largest).
   double in(double least, double largest) {
     return least + (largest - least) * static_cast<double>(engine_() >> 11) / 9007199254740992.0;
   }
@@ -108,6 +110,7 @@ class Pair {
   State state_;
 };
 
+/// Returns the pose with the centre of body a at the origin. a, b: orientations; c: centre of body b, m.
 Pose pose_of(const Eigen::Quaterniond& a, const Vec3<double>& c, const Eigen::Quaterniond& b) {
   Pose pose;
   pose << 0, 0, 0, a.w(), a.x(), a.y(), a.z(), c, b.w(), b.x(), b.y(), b.z();

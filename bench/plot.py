@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the CSV of bench/work_precision as run time, or evaluations, against error, with one panel per problem.
+"""Draws run time, or the number of evaluations, against error from the CSV of bench/work_precision, one panel per problem.
 
 Failed runs are crosses in the lower left corner, in the colour of their method. Errors decrease to the right. The unit of
-gap_m is m and that of balance_J is J. The errors of positions, of velocities and of joint forces are relative.
+gap_m is m, and the unit of balance_J is J. The errors of positions, of velocities and of joint forces are relative.
 
 usage: work_precision FOLDER; bench/plot.py FOLDER/work_precision.csv work_precision.svg   (needs matplotlib)
 """
@@ -16,7 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 MAX_COLUMNS = 4  # panels side by side
-FAILED_ERROR = 10  # runs with at least this error, in body lengths, are shown as failed
+FAILED_ERROR = 10  # runs with at least this relative error are drawn as failed runs
 QUANTITIES = {
     "error": "error at the end",
     "error_along": "largest error at eight times",

@@ -1,8 +1,8 @@
 #!/bin/bash
-# Measures run time against error: writes the tables of work_precision and draws run time against each kind of error, and
-# evaluations against the error at the end.
-#
-# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: path of the program; option: of this program (--all, --only, --again)
+# Measures run time against error: writes the tables of work_precision to FOLDER. Draws run time against each kind of error,
+# and the number of evaluations against the error at the end.
+# usage: bench/precision.sh FOLDER WORK_PRECISION [options]     WORK_PRECISION: path of the program work_precision; options:
+# its options --all, --only PROBLEM and --again
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,5s/^# \?//p' "$0"; exit 2; }
 folder=$1 program=$2

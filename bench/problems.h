@@ -9,7 +9,7 @@
 //   dust       free spinning ellipsoid without stiffness of its semi-axes: every particle flies straight
 //   solid      free tumbling superellipsoid whose semi-axes, taper, twist and bend are elastic
 //   four-bars  row of 40 four-bar linkages ("windows") of rods on hinges, which rotate (IFToMM A02)
-//   assembly   five ellipsoids with elastic semi-axes, initially apart; their joints close (Baumgarte)
+//   assembly   five ellipsoids with elastic semi-axes, initially apart; Baumgarte's method closes the joints
 //   ringing    tumbling balloon of 432 triangles that vibrates while it falls
 //   stiff      the balloon of ringing, suspended at its top by a ball joint, 1000 times as stiff, damped
 //   bounce     ball that rebounds from a plane with restitution 0.8, in air with drag
@@ -27,8 +27,8 @@ namespace pliant::bench {
 struct Problem {
   std::string name;
   double end;  ///< end time, s
-  /// Length of a body, m. Errors are distances of centres divided by this length. If it is 0, errors are
-  /// norms of all coordinates by ErrorScale.
+  /// Length of a body, m. Errors are distances of centres divided by this length. If the length is 0, errors
+  /// are differences of all coordinates in the norm of ErrorScale.
   double length;
   bool long_running;  ///< whether work_precision measures the problem only with --all or --only
   std::function<void(MultiBody&)> build;
@@ -40,7 +40,7 @@ inline Problem chain_of(int n, bool long_running = false) {
             chain(linkage, n);
           }};
 }
-/// Nets are chaotic, so the end time is shorter for larger nets.
+/// end: end time, s. The motion of nets is chaotic, so larger nets have shorter end times.
 inline Problem net_of(int n, double end, bool long_running = false) {
   return {"D" + std::to_string(n), end, 2 * kNetRadius, long_running, [n](MultiBody& body) {
             Linkage linkage(body);
@@ -130,6 +130,7 @@ inline void assembly(MultiBody& body) {
   }
 }
 
+/// stiffness: Young's modulus, Pa. damping: LocalSettings::beta, s.
 inline Part& balloon(MultiBody& body, double stiffness, double damping) {
   Part& part = body.add<Primitive<Sphere>>("balloon", 1.0);
   part.rest({{"r", 0.5}}).make_shell();

@@ -1,5 +1,5 @@
-// Reference solutions of smooth motions to nearly full precision, by two methods of order 8. The engine
-// contains neither method. Both methods use accelerations only, without projection.
+// Reference solutions of smooth motions to nearly full precision, by two methods of order 8, which pliant
+// does not contain. Both methods use the accelerations of pliant only, without projection.
 #pragma once
 
 #include <array>
@@ -89,8 +89,8 @@ class Extrapolation final : public SmoothMotion {
   }
 };
 
-/// Gauss collocation with four stages. The stages are iterated until rounding prevents further convergence
-/// (Hairer, Norsett & Wanner, section II.7).
+/// Gauss collocation with four stages (Hairer, Norsett & Wanner, section II.7). The stages are iterated until
+/// rounding prevents further convergence.
 class Collocation final : public SmoothMotion {
  public:
   Collocation(const Dynamics& dynamics, const State& start) : SmoothMotion(dynamics, start) {

@@ -2,8 +2,9 @@
 // frame. Prints one CSV row for each picture size, with the times of drawing, of writing the PNG, and of
 // both. The target for 640x480 with PNG is 45 ms (two raster threads).
 //
-//   render_bench [FRAMES] [FOLDER]     FRAMES: number of frames of 640x480 (40), four times that of
-//   1920x1080; FOLDER: receives the last picture of each size (the system's temporary folder)
+//   render_bench [FRAMES] [FOLDER]     FRAMES: number of frames of 640x480 (default: 40); a quarter as many
+//   frames of 1920x1080 are drawn; FOLDER: receives the last picture of each size (default: the temporary
+//   folder of the system)
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -23,7 +24,7 @@ double signed_power(double x, double e) {
   return std::copysign(std::pow(std::abs(x), e), x);
 }
 
-// Returns a superellipsoid of 2 * columns * (rows - 1) triangles, with one vertex at each pole.
+// Returns a superellipsoid of 2 * columns * (rows - 1) triangles, with one vertex at each pole. a: semi-axes.
 pliant::TriangleMesh superellipsoid(int rows, int columns, double eps1, double eps2,
                                     const Eigen::Vector3d& a) {
   const int rings = rows - 1, poles = rings * columns;
@@ -61,7 +62,7 @@ pliant::TriangleMesh superellipsoid(int rows, int columns, double eps1, double e
   return mesh;
 }
 
-// Returns the meshes of 4 x 5 bodies that rotate and hop, at time t.
+// Returns the meshes of 4 x 5 bodies that rotate and hop, at time t (s). rest: the meshes in body frames.
 std::vector<pliant::TriangleMesh> placed(const std::vector<pliant::TriangleMesh>& rest, double t) {
   std::vector<pliant::TriangleMesh> now = rest;
   for (std::size_t i = 0; i < rest.size(); ++i) {

@@ -1,16 +1,19 @@
-// Run time against error of free vibrations: a solid sphere (r = 0.1 m, E = 1e5 Pa, nu_P = 0.3, 1000 kg/m^3)
-// with its lowest torsional mode T2 at 24.68711 Hz and its lowest spheroidal mode S2 at 26.11917 Hz (Lamb
-// 1882), and a closed membrane of the same radius and material, 1 mm thick, with the lowest modes n = 2 at
-// 11.695 Hz (Lamb 1882). Higher modes of the membrane are not measured, because on a mesh they are mixed with
-// modes of short waves. For each basis, the table has the processor time for a simulated period of the lowest
-// mode and the relative errors of the frequencies. With the basis "nodes", the step is 0.9 times the largest
-// stable step. With modes and polynomials there are three steps per period, and free oscillators are
-// integrated exactly. The error of the basis "nodes" is the error of the frequency of the mesh plus that of
-// the method of integration. The frequency of the mesh is that of the basis "modes". For order 2 this
-// overestimates the error: the basis "modes" uses elements of 10 nodes, and the basis "nodes" uses elements
-// of 15 nodes, which are more accurate. Writes CSV to standard output, and then the time of each basis at
-// given errors of the lower mode and of both modes. An entry is "not reached" if no row has at most the given
-// error.
+// Run time against error of free vibrations of two bodies (r = 0.1 m, E = 1e5 Pa, 1000 kg/m^3, Poisson's
+// ratio 0.3). The frequencies are those of Lamb (1882). A solid sphere has its lowest torsional mode T2 at
+// 24.68711 Hz and its lowest spheroidal mode S2 at 26.11917 Hz. A closed membrane, 1 mm thick, has its lowest
+// modes n = 2 at 11.695 Hz. Higher modes of the membrane are not measured, because on a mesh they are mixed
+// with modes of short waves.
+//
+// For each basis, the table has the processor time for a simulated period of the lowest mode and the relative
+// errors of the frequencies. With the basis "nodes", the step is 0.9 times the largest stable step. With
+// modes and polynomials there are three steps per period, and free oscillators are integrated exactly. The
+// error of the basis "nodes" is the error of the frequency of the mesh plus the error of the method of
+// integration. The frequency of the mesh is computed with the basis "modes". For order 2 this overestimates
+// the error: the basis "modes" uses elements of 10 nodes, and the basis "nodes" uses elements of 15 nodes,
+// which are more accurate.
+//
+// Writes CSV to standard output, and then the time of each basis at given errors of the lower mode and of
+// both modes. An entry is "not reached" if no row has at most the given error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>
@@ -84,13 +87,13 @@ std::vector<Mode> membrane_modes() {
 
 struct Row {
   std::string basis;
-  // Relative errors of the frequency of the lower mode, and of the worse of both modes; processor time, s per
-  // period of the lower mode.
+  // error: relative error of the frequency of the lower mode; error_of_both: the larger error of both modes;
+  // time: processor time, s per period of the lower mode.
   double error, error_of_both, time;
 };
 
-/// A measured case: a solid or shell, and its basis. fineness: degree of the polynomials, or resolution of
-/// the mesh. order: order of the elements.
+/// A measured case: a solid or shell with a basis of its deformation. fineness: degree of the polynomials, or
+/// resolution of the mesh. order: order of the elements.
 struct Case {
   std::string name;
   bool shell;

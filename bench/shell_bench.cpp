@@ -1,9 +1,10 @@
 // Time per triangle of a force evaluation for each shell energy, on spheres. Writes CSV to standard output.
 // Further columns are the multiply-adds (the larger of the numbers of products and sums) and the bytes per
 // triangle, counted from the formulas. The columns part_of_peak and part_of_bandwidth compare the evaluation
-// with two speeds, which this run measures with one thread: the peak of multiply-adds, and the bandwidth of a
-// triad (a = b + s c) over arrays with as many bytes in total as the evaluation uses. The speed is multiplied
-// by the number of threads. Each column is the time of the counted work at this product / the measured time.
+// with two speeds of one thread, which this run measures: the peak of multiply-adds, and the bandwidth of a
+// triad (a = b + s c) over arrays with as many bytes in total as the evaluation uses. Per triangle,
+//   part_of_peak = multiply_adds / (peak * threads * time),
+//   part_of_bandwidth = bytes / (bandwidth * threads * time).
 //
 //   shell_bench [FOLDER]     also writes shell_bench.csv to FOLDER
 #include <cmath>
@@ -28,9 +29,10 @@ namespace {
 struct Work {
   double multiply_adds, bytes;
 };
-/// Returns the bytes per triangle of the nodal data, for `elements` elements of `corners` corners per
-/// triangle. Each corner reads coordinates and a node number, writes its force, and reads the force and its
-/// position in the buffer again. Each node reads and writes its force.
+/// Returns the bytes per triangle of the nodal data. corners: of an element; elements: number of elements per
+/// triangle. For each corner the evaluation reads coordinates and a node number, writes the force of the
+/// corner to a buffer, and later reads the position of the force in the buffer and the force. For each node
+/// it reads and writes the force.
 double gather_bytes(int corners, double elements) {
   return elements * corners * (3 * 8 + 2 * 3 * 8 + 4 + 4) + 0.5 * 2 * 3 * 8;
 }
@@ -90,10 +92,13 @@ int main(int argc, char** argv) {
     bench.measure("neo-Hookean incompressible", mesh, NeoHookeanMembrane(mesh, {1e5, 0.5, 0.01}),
                   {65, three + 9 * 8});
     bench.measure("constant pressure", mesh, ConstantPressure(mesh, 1), {40, 1.5 * three});
-    // Data of a hinge: its gradient, read twice (linear), or its coordinates, read again, and the sine and
-    // cosine of its rest angle (folding); its angle; two moments and their indices. Data of a triangle: the
-    // matrices Q and C of bending.h, the sides of its edges, indices of edges and angles, and moments,
-    // written and read. A triangle also has edges, read twice (linear), or its strain at rest (folding).
+    // Additional data of a hinge: its angle, two moments and their indices. LinearBending reads the gradient
+    // of the angle twice. FoldingBending reads the coordinates again, and the sine and cosine of the rest
+    // angle.
+    //
+    // Data of a triangle: the matrices Q and C of bending.h, for each edge the side on which the triangle is,
+    // indices of edges and angles, and moments, which are written and read. LinearBending reads the edge
+    // vectors twice. FoldingBending reads the strain at rest.
     const double triangles = gather_bytes(3, 2) + (6 + 9 + 3 + 3 + 2 * 3) * 8;
     bench.measure("linear bending", mesh, LinearBending(mesh, sheet, 1),
                   {120, hinges + 1.5 * (2 * 12 + 4) * 8 + triangles + 2 * 9 * 8});

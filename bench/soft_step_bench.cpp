@@ -44,7 +44,8 @@ void measure(int resolution, int threads, bench::TableFile& file) {
   NodalEnergy::Buffer buffer;
   ThreadPool pool(threads);
   Workspace<double> work;
-  // Minimum times over rounds of all calls, so that other load does not distort the ratios.
+  // Each round measures all calls, and each time is the minimum over the rounds, so that a load by other
+  // programs does not change the ratios.
   double kernel = std::numeric_limits<double>::infinity(), evaluation = kernel, euler_step = kernel,
          rk4_step = kernel;
   auto update_min = [](double& time, auto&& call) {

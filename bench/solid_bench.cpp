@@ -1,9 +1,9 @@
 // Time of one force evaluation of solid energies, for each element, law, size and number of threads. Writes
 // CSV to standard output, after a comment about the columns. Operations are counted by evaluating the
-// formulas of an element with a counting number type. Bytes are those that pass through memory if caches do
-// not retain data: constants of the quadrature points, node numbers, forces written and read back,
-// coordinates and forces once for each node. The bandwidth is that of a triad (a = b + s c) over arrays of as
-// many bytes in total, in the same cache.
+// formulas of an element with a number type that counts (counted.h). Bytes are those that an evaluation reads
+// and writes: constants of the quadrature points, node numbers, element forces (written and read back), and
+// the coordinates and forces of each node once. The bandwidth is that of a triad (a = b + s c) over arrays
+// with the same number of bytes in total, so that both use the same level of the caches.
 //
 //   solid_bench [FOLDER]     also writes solid_bench.csv to FOLDER
 #include <cstdio>
@@ -39,8 +39,8 @@ Mesh sphere(int resolution, Solid::Order order) {
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements()};
 }
 
-/// Returns the number of operations of one element, by running the kernel of SolidEnergy with a counting
-/// number type.
+/// Returns the number of operations of one element. The function runs the kernel of SolidEnergy with the
+/// number type Counted.
 template <class Element, class Law>
 long operations() {
   using bench::Counted;
@@ -57,7 +57,7 @@ long operations() {
   for (const TetrahedronPoint& at : Element::rule) {
     Mat3<Counted> G = product(Element::gradient(at, x), inverse);
     const long before = Counted::operations;
-    if (Law::of == NodalEnergy::Of::position) G = inverse;  // deformation gradient F = 1, as at rest
+    if (Law::of == NodalEnergy::Of::position) G = inverse;  // the deformation gradient is I, as at rest
     Counted::operations = before;
     Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse),
                               f);

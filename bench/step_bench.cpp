@@ -1,7 +1,7 @@
 // Time of a step of semi-implicit Euler and of an evaluation of the accelerations, divided by the number of
-// parts. The parts have different features, and their number is 1, 10 or 1000. Writes CSV to standard output.
-// The last column is the cost of an evaluation per part, in multiply-adds at the measured peak of this
-// machine.
+// parts. All parts of a run are of one kind, and their number is 1, 10 or 1000. Writes CSV to standard
+// output. The last column is the number of multiply-adds that this machine could perform at its measured peak
+// in the time of an evaluation per part.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -55,8 +55,8 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
-/// Adds a part with dynamic exponents over their whole ranges. The shape of every ring of the surface
-/// changes, so the full quadrature rule is needed.
+/// Adds a part whose exponents are dynamic over their whole ranges. The exponents change the shape of every
+/// curve u = const on the surface, so the mass points are those of the full quadrature rule.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});

@@ -44,7 +44,8 @@ class TableFile {
     for (std::size_t i = 0; i < cells.size(); ++i) file_ << (i > 0 ? "," : "") << cells[i];
     file_ << '\n' << std::flush;
   }
-  /// Writes the text of std::printf for these arguments, at most 511 characters, with its line break.
+  /// Writes the text that std::printf would print, at most 511 characters. The format contains the line
+  /// break.
   template <class... Args>
   void row(const char* format, Args... args) {
     char line[512];

@@ -1,5 +1,5 @@
-// Timing for benchmarks: the minimum time of several repeats, and calibration kernels measured in the same
-// run, so that results can be given as ratios that are comparable between machines.
+// Timing for benchmarks: the minimum time of several repeats, and calibration kernels. The kernels are
+// measured in the same run as a benchmark. The ratio of both times is comparable between machines.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace pliant::bench {
 
 /// Clock of the processor time of this process, summed over its threads. Other processes disturb this time
-/// less than the wall-clock time. The clock is for long calls in one thread, which other processes interrupt.
+/// less than the wall-clock time. Use this clock for long calls in one thread, which other processes
+/// interrupt.
 struct ProcessorClock {
   using duration = std::chrono::duration<double>;
   using time_point = std::chrono::time_point<ProcessorClock, duration>;
@@ -21,8 +22,7 @@ struct ProcessorClock {
 };
 
 /// Returns the seconds per call of f: the minimum over `repeats` batches. A batch is a number of calls that
-/// together need at least `batch` seconds. Short batches can run undisturbed between other work of the
-/// machine.
+/// together need at least `batch` seconds. A short batch can run without interruption by other programs.
 template <class Clock = std::chrono::steady_clock, class F>
 double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   auto elapsed = [&](long calls) {

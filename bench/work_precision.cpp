@@ -11,7 +11,7 @@
 //   --only     measures this problem only
 //   --again    preserves the rows in FOLDER of problems that are not measured now. If FOLDER already contains
 //              the same run, with equal numbers of steps and evaluations, the smaller time is written. Use
-//              --again on a machine that others use, because the minimum over several rounds is reliable.
+//              --again on a machine with other load, because the minimum over rounds is more reliable.
 //
 // Tables go to standard output.
 //
@@ -22,11 +22,12 @@
 // measurement stops if a run exceeds the time limit, or if the error is below 1e-11 or below the resolution
 // of the reference.
 //
-// error: error at the end, of the positions of the bodies divided by their length, or of all coordinates
-// (error_scale.h). error_along: the maximum of this error at eight times, in a run that stops at each of
-// them. Gaps and energy errors are maxima over these times too. error_v: error of the velocities at the end,
-// relative to the fastest one (error_scale.h). error_lambda: error of the joint forces at the end, relative
-// to the largest one.
+// error: error of the positions of the bodies at the end, divided by the length of a body; for problems
+// without such a length, error of all coordinates at the end (error_scale.h). error_along: the maximum of
+// this error at eight times, in a run that stops at each of these times. Gaps and energy errors are maxima
+// over these times too. error_v: error of the velocities at the end, relative to the fastest rate of each
+// part (error_scale.h). error_lambda: error of the joint forces at the end, relative to the largest joint
+// force.
 //
 // The time is the CPU time of the stepping loop, with one thread, and the minimum of several runs without
 // intermediate stops. It does not include the trial by which auto chooses its method.
@@ -34,11 +35,11 @@
 // The reference is the result of collocation. Its accuracy is estimated by its difference from the result of
 // extrapolation (reference_methods.h). For problems with nodes, or with joints that close, the two results
 // are those of dop853 with a tolerance of 1e-12 and of dormand_prince with 1e-11, or with the smallest
-// tolerance that rounding permits. These are two methods, but both contain the engine's projection and its
-// search for the time of closing. For problems with contact, the results are those of dop853 with 1e-10, and
-// of rk4 extrapolated from short steps and steps of half this length, because the error of persistent
-// contacts is of first order. Errors below 100 times the difference of the two results are written as 100
-// times the difference. Velocities and forces have differences of their own.
+// tolerance that rounding permits. These two methods are different, but both use the projection of pliant and
+// its search for the times at which joints close. For problems with contact, the results are those of dop853
+// with 1e-10, and of rk4 extrapolated from short steps and steps of half this length, because the errors of
+// resting contacts may be of first order. Errors below 100 times the difference of the two results are
+// written as 100 times the difference. Velocities and forces have differences of their own.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -155,7 +156,7 @@ Outcome run(const Problem& problem, const Setting& setting, double timed_seconds
   return result;
 }
 
-/// Measures errors with the help of a model of the problem.
+/// Computes the errors of states of a problem.
 class ErrorMeter {
  public:
   explicit ErrorMeter(const Problem& problem) : length_(problem.length) {
@@ -177,12 +178,14 @@ class ErrorMeter {
         worst = std::max(worst, (a.q.segment<3>(part.q0) - b.q.segment<3>(part.q0)).norm() / length_);
     return worst;
   }
+  /// Returns the largest position_error over the sampled states.
   double error_along(const Outcome& a, const Outcome& b) const {
     double worst = 0;
     for (std::size_t i = 0; i < a.states.size(); ++i)
       worst = std::max(worst, position_error(a.states[i], b.states[i]));
     return worst;
   }
+  /// Returns the difference of the velocities at the end, in the norm of ErrorScale with the rates of b.
   double velocity_error(const Outcome& a, const Outcome& b) const {
     return scale_->norm(VecX<double>::Zero(a.end.q.size()), a.end.v - b.end.v, b.end.v);
   }
@@ -215,9 +218,9 @@ bool is_smooth(const Problem& problem) {
   });
 }
 
-/// Runs with the first of the tolerances finest, 10 finest, 100 finest, ... at which the method succeeds.
-/// At finer tolerances, rounding errors make the method fail. Throws StepFailure if the method also fails at
-/// the first tolerance above 1e-9.
+/// Simulates with the first of the tolerances finest, 10 finest, 100 finest, ... at which the method
+/// succeeds. At smaller tolerances, rounding errors may make the method fail. Throws StepFailure if the
+/// method also fails at the first tolerance above 1e-9.
 Outcome run_at_finest_tolerance(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {
@@ -267,8 +270,8 @@ Outcome smooth(const Problem& problem, const ErrorMeter& meter) {
   return best;
 }
 
-/// Extrapolates two runs, with errors proportional to their steps, to the step zero. The steps of the second
-/// run are half as long.
+/// Extrapolates two runs to the step zero, for errors that are proportional to the step. The steps of the
+/// second run are half as long.
 Outcome limit_of(const Outcome& coarse, Outcome fine, const Model& model) {
   for (std::size_t i = 0; i < fine.states.size(); ++i) {
     fine.states[i].q = (2 * fine.states[i].q - coarse.states[i].q).eval();
@@ -285,9 +288,9 @@ struct Cost {
 };
 
 /// Returns the CPU time (ms) at an error of `level`. runs: from coarse to fine. The time is interpolated, in
-/// logarithms, between two runs: the coarsest one from which on all errors are at most `level`, and the run
-/// before that one. If the errors of all runs are at most `level`, returns the time of the first run. Returns
-/// NaN if the last run has a larger error, or if there are no runs.
+/// logarithms, between the last run whose error is larger than `level` and the next run. If the errors of all
+/// runs are at most `level`, returns the time of the first run. Returns NaN if the last run has a larger
+/// error, or if there are no runs.
 double cost_at(const std::vector<Cost>& runs, double level) {
   for (std::size_t i = runs.size(); i-- > 0;) {
     if (runs[i].error <= level) continue;
@@ -355,7 +358,7 @@ class Rounds {
   std::map<std::string, double> min_times_;
 };
 
-/// Compares the cost of auto with that of the best single method at each error level. If two successive
+/// Compares the cost of auto with the cost of the best single method at each error level. If two successive
 /// levels have equal ratios, because the same two runs qualify for both levels, the second level is ignored.
 class AutomaticChoice {
  public:

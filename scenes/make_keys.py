@@ -39,7 +39,7 @@ def number(x):
 
 
 def interval(schema):
-    """The admissible numbers of a schema: "> 0", "in [0, 1]"; empty if all are."""
+    """The admissible numbers of a schema: "> 0", "in [0, 1]"; empty if all numbers are admissible."""
     low, high = schema.get("minimum"), schema.get("maximum")
     above, below = schema.get("exclusiveMinimum"), schema.get("exclusiveMaximum")
     if low is None and above is None:
@@ -54,7 +54,7 @@ def interval(schema):
 
 
 def value(schema):
-    """What a value may be, for the column "value"."""
+    """The admissible values of a schema as text, for the column "value"."""
     if "allOf" in schema:
         return value(schema["allOf"][0])
     if "$ref" in schema:
@@ -158,7 +158,7 @@ def tagged(title, schema):
 
 
 def references(node):
-    """Names of the definitions that a schema refers to, in the order in which they come."""
+    """Names of the definitions that a schema refers to, in the order in which they appear."""
     if isinstance(node, dict):
         if "$ref" in node:
             yield node["$ref"].split("/")[-1]

@@ -1,4 +1,4 @@
-// The largest of the noted errors, 0 without errors. An error that is not a number counts as infinite, so
+// The largest of the noted errors, 0 without errors. An error that is not a number is treated as infinite, so
 // that a check of the largest error fails.
 #pragma once
 

@@ -30,7 +30,7 @@ struct CheckCommand {
 // Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
 // run for 0.4 s, or for 0.7 s if bodies can touch. If these steps do not reach the end of the run, their time
 // is extrapolated. If bodies can touch, the whole time is used, because the first impacts may cost more than
-// all later contacts. Otherwise the first quarter is left out, because the first steps to a tolerance are
+// all later contacts. Otherwise the first quarter is left out, because the first steps with a tolerance are
 // short.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   const bool contact = simulation.model().body().contact.active;
@@ -60,7 +60,7 @@ std::string obstacle_text(const pliant::MultiBody& body) {
          pliant::count_text(triangles, "triangle");
 }
 
-// Returns how many numbers are recorded for a state, in all tables with one row per state.
+// Returns the count of numbers that are recorded for a state, in all tables with one row per state.
 std::size_t numbers_per_state(const pliant::Model& model, bool in_clusters) {
   return 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) + pliant::mode_count(model, in_clusters) +
          pliant::work_columns().size() + pliant::checksum_columns(pliant::checked_tables(model)).size();
@@ -93,7 +93,7 @@ void print_estimate(pliant::Scene& scene) {
             << " MB\n";
 }
 
-// Prints how long it took to read and prepare a scene, if this is a noticeable time.
+// Prints the time (s) that reading and preparing a scene took, if this time is noticeable.
 void print_preparation(double seconds) {
   constexpr double kNoticeable = 1;
   if (seconds > kNoticeable)

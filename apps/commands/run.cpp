@@ -47,8 +47,8 @@ fs::path folder_of(const RunCommand& command) {
          (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
 }
 
-// Sets the options of the command line in the scene. A resumed run keeps its old settings, except those that
-// the command line sets. --step removes the tolerance; without --integrator it replaces "auto" by the method
+// Sets the options of the command line in the scene. A resumed run keeps its old settings, unless the command
+// line changes them. --step removes the tolerance; without --integrator it replaces "auto" by the method
 // of the paper. --integrator with a method of fixed steps replaces "auto" and its tolerance. --tolerance
 // without --integrator selects "auto" if the method of the scene has no error control. "auto" without a
 // tolerance gets the standard tolerance.

@@ -1,4 +1,4 @@
-// pliant verify: checks that all files of a run are there and as they were written.
+// pliant verify: checks that no file of a run is missing or damaged.
 #include <iostream>
 #include <memory>
 #include <new>

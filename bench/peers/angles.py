@@ -1,6 +1,6 @@
 """Ball joints as three angles, for engines without other ball joints.
 
-The order of the axes keeps the middle angle small.
+The order of the axes keeps the middle angle small, far from the singularity at a right angle.
 """
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -9,7 +9,7 @@ from problems import conjugate, product, rotation
 
 
 def order(problem):
-    """Returns the axes in order; each is an axis of the frame rotated about the previous axes.
+    """Returns the axes of the three rotations in order. Each axis belongs to the frame that the earlier rotations have turned.
 
     The links of a chain swing about y; the body of problem B revolves about z.
     """
@@ -17,6 +17,7 @@ def order(problem):
 
 
 def matrix(problem, angles):
+    """Returns the rotation matrix, child to parent, of three angles, rad."""
     return Rotation.from_euler(order(problem), angles).as_matrix()
 
 

@@ -9,7 +9,7 @@ from contact_problems import FRICTION, GRAVITY
 from hulls import ellipsoid_hull
 
 DISTRIBUTION = "pybullet"
-COEFFICIENT = math.sqrt(FRICTION)  # of every body and surface: Bullet multiplies the coefficients of both
+COEFFICIENT = math.sqrt(FRICTION)  # of each body and surface; Bullet multiplies the friction coefficients of the two
 
 
 def shape_of(body):
@@ -47,7 +47,7 @@ def make(problem, step):
         turn = rotations(body.quaternion[None])[0]
         pybullet.resetBaseVelocity(made[-1], body.velocity.tolist(), (turn @ body.spin).tolist())
         if not problem.touch:
-            pybullet.setCollisionFilterGroupMask(made[-1], -1, 4, 2)  # a group of their own; immobile bodies are in 2
+            pybullet.setCollisionFilterGroupMask(made[-1], -1, 4, 2)  # in group 4; collides with group 2 only (immobile)
 
     def advance(count):
         for _ in range(count):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The cost of contact in other engines, one thread: problems of bench/contact_bench.cpp and balloon_bench.cpp.
+"""Measures contact in other engines with one thread: problems of bench/contact_bench.cpp and balloon_bench.cpp.
 
 usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--problems rigid,balloons] [--most 1000]
                   [--rounds 3]
@@ -32,7 +32,7 @@ GRAVITY = [0, 0, -contact_problems.GRAVITY]
 HEAPS = {"ellipsoid, plane": 1, "ellipsoid, heap": 5}
 STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps between samples of the contacts
 # The problems of balloon_bench. beta: stiffness-proportional damping, s; drag: damping of all motion, 1/s.
-POISSON, RADIUS, MAX_STEP, MIN_STEP = 0.45, 0.1, 2**-10, 2**-20  # the steps tried are between these limits, s
+POISSON, RADIUS, MAX_STEP, MIN_STEP = 0.45, 0.1, 2**-10, 2**-20  # 1, m, s, s
 FIRM = SimpleNamespace(E=1e7, thickness=1e-3, pressure=0, beta=0, drag=0)
 THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
 # balloon, count, duration in s, numbers of triangles
@@ -91,7 +91,7 @@ def balloons(balloon, count, triangles, step, integrator):
     spec = mujoco.MjSpec.from_string(f"<mujoco><worldbody>{''.join(parts)}</worldbody></mujoco>")
     option = spec.option
     option.timestep, option.gravity = step, GRAVITY
-    if integrator != "euler":  # CG is the faster solver for the discrete integrator
+    if integrator != "euler":  # with the discrete integrator, the solver CG (conjugate gradients) is the fastest
         option.integrator, option.solver = mujoco.mjtIntegrator.mjINT_DISCRETE, mujoco.mjtSolver.mjSOL_CG
     if integrator == "ipc":
         option.enableflags |= mujoco.mjtEnableBit.mjENBL_IPC
@@ -113,7 +113,7 @@ def balloons(balloon, count, triangles, step, integrator):
 
 
 def deepest_balloon(data, faces, count):
-    """Returns the largest depth of the contacts, and of vertices behind the floor or inside another balloon.
+    """Returns the largest depth of contacts and of vertices behind the floor or inside another balloon, m.
 
     MuJoCo has no contacts for vertices that have passed through a surface.
     """
@@ -125,7 +125,7 @@ def deepest_balloon(data, faces, count):
 
 
 def add_pressure(model, data, faces, pressure):
-    """Applies the forces of an internal pressure; flexes have no pressure of their own."""
+    """Applies the forces of an internal pressure (Pa) to the vertices, because flexes have no pressure of their own."""
     a, b, c = data.flexvert_xpos[faces.T]
     forces = np.zeros((model.nflexvert, 3))
     for corner in faces.T:
@@ -134,7 +134,7 @@ def add_pressure(model, data, faces, pressure):
 
 
 def balloon_run(balloon, count, duration, triangles, step, integrator):
-    """Returns (CPU s, largest depth, largest stretch of a string in m), or None if the run is unstable.
+    """Returns (CPU s, largest depth in m, largest stretch of a string in m), or None if the run is unstable.
 
     The time in which the script computes the pressure is not included.
     """
@@ -151,7 +151,7 @@ def balloon_run(balloon, count, duration, triangles, step, integrator):
         start = time.process_time()
         try:
             mujoco.mj_step(model, data)
-        except mujoco.FatalError:  # not enough memory for the contacts after a blow-up
+        except mujoco.FatalError:  # an unstable run may have more contacts than MuJoCo has memory for
             return None
         seconds += time.process_time() - start
         if i % SAMPLED == 0:
@@ -164,7 +164,10 @@ def balloon_run(balloon, count, duration, triangles, step, integrator):
 
 
 def fastest(run, *args, rounds):
-    """Returns the result of the run with the minimum CPU time, or None if the run is unstable. Each run is a process."""
+    """Returns the result of the run with the minimum CPU time, or None if the run is unstable.
+
+    Each run has a process of its own.
+    """
     best = in_child(run, *args)
     spent = best[0] if best else 0
     for _ in range(rounds - 1):
@@ -185,7 +188,7 @@ def rigid_rows(engines, max_bodies, rounds):
             for count in (n for n in (10, 100, 1000) if n <= max_bodies):
                 try:
                     seconds, max_depth = fastest(rigid_run, engine, count, layers, rounds=rounds)
-                except Exception as fault:  # any exception of an engine
+                except Exception as fault:  # any exception of an engine is a failed run
                     print(f"{engine}, {problem}, {count}: FAILED, {fault}", flush=True)
                     continue
                 yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",

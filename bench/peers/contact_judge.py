@@ -1,4 +1,4 @@
-"""Measures of a contact run, equal for every engine: overlaps and energies from sampled states.
+"""Computes overlaps, energies and errors of a contact run from sampled states, in the same way for every engine.
 
 A sample is an array (bodies, 13): centre, quaternion w x y z, velocity (world), angular velocity (body frame).
 """
@@ -78,12 +78,12 @@ def energy_error(problem, times, samples):
 
 
 def judge(problem, times, samples, reference):
-    """Returns (median, largest error of the places at the end, largest depth, error of the energy).
+    """Returns (median error and largest error of the centres at the end in m, largest depth in m, error of the energy).
 
-    reference: exact places at the end, or None if they are not compared.
+    reference: exact centres at the end (bodies, 3), or None if the centres are not compared.
     """
     if not np.isfinite(samples).all():
-        raise RuntimeError("not finite")
+        raise RuntimeError("a state of the run is not finite")
     errors = (np.full(2, np.nan) if reference is None
               else np.linalg.norm(samples[-1, :, :3] - reference, axis=1))
     depth = surface_depth(problem, samples)

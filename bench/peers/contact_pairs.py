@@ -3,8 +3,8 @@
 
 usage: contact_pairs.py FOLDER --program build/release/bench/pair_bench [--rounds 3]
 
-Writes pair_peers.csv to FOLDER. Both programs run in alternation; the least times are written. max_difference_m is the
-largest difference of the two gaps.
+Writes pair_peers.csv to FOLDER. Both programs run in alternation; the least times are written. The column max_difference_m
+is the largest difference between the gap in pliant and the gap in coal.
 """
 import argparse
 import csv

@@ -3,9 +3,9 @@
 
 usage: contact_plot.py CONTACT_PRECISION.csv FOLDER
 
-Writes FOLDER/contact_precision.png and FOLDER/contact_precision_table.csv: CPU seconds of the cheapest run of each engine
-with at most this median error. A run qualifies only if the errors of all finer runs of its method are at most 3 times this
-error.
+Writes FOLDER/contact_precision.png and FOLDER/contact_precision_table.csv. For each error level the table has the CPU
+seconds of the cheapest run of each engine whose median error is at most this level. A run qualifies only if the errors of
+all finer runs of its method are at most 3 times this level.
 """
 import csv
 import math
@@ -18,7 +18,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 LEVELS = 5e-3, 1e-3, 2e-4, 5e-5  # m
-LEAST_DEPTH = 1e-9  # m; smaller depths are drawn here
+LEAST_DEPTH = 1e-9  # m; smaller depths are drawn at this depth
 COLOURS = {"pliant": "black", "mujoco": "C0", "bullet": "C1", "rapier": "C2"}
 
 
@@ -35,7 +35,7 @@ def read(path):
 
 
 def time_at(points, level):
-    """Returns the least time of the runs that qualify, or infinity."""
+    """Returns the least time of the runs that qualify for an error level, or infinity."""
     best = math.inf
     for i, (seconds, error, _) in enumerate(points):
         if error <= level and all(finer <= 3 * level for _, finer, _ in points[i + 1:]):

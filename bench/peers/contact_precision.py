@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Run time against error of contact, in pliant and in other engines, one thread each.
+"""Measures run time against error of contact, in pliant and in other engines, with one thread.
 
 usage: contact_precision.py FOLDER --program build/release/bench/scene_states [--engines pliant,mujoco,bullet,rapier]
                             [--problems block,drop,slide,bowl,heap] [--rounds 3] [--limit 3]
 
 Writes contact_precision.csv and contact_reference.csv to FOLDER. The engines run in alternation, setting by setting, so
-that they meet the same state of the machine.
+that other load of the machine affects all engines equally.
 """
 import argparse
 import csv
@@ -28,14 +28,14 @@ from contact_judge import judge
 PEERS = "mujoco bullet rapier".split()
 COLUMNS = "problem,engine,method,setting,cpu_s,median_error_m,max_error_m,depth_m,energy_error,failed".split(",")
 TOLERANCES = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6  # of pliant
-# The reference: each body alone, simulated by pliant with this method and tolerance. It is confirmed by another tolerance,
-# and by fixed steps of another method, s.
+# The reference: pliant simulates each body alone, with this method and tolerance. Other runs of pliant confirm the
+# reference: (method, kind of setting, tolerance or step in s).
 REFERENCE = "dop853", 1e-7
 CONFIRMED_BY = ("dop853", "tolerance", 1e-6), ("rk4", "step", 0.02 / 2**8), ("rk4", "step", 0.02 / 2**9)
 
 
 def simulate(engine, name, step):
-    """Runs in the process of an engine. Returns (CPU s, samples)."""
+    """Simulates a problem in an engine, in the process of the engine. step: s. Returns (CPU s, samples)."""
     problem = contact_problems.make(name)
     advance, sample = importlib.import_module(f"{engine}_contact").make(problem, step)
     steps, seconds, samples = round(pliant_contact.INTERVAL / step), 0, [sample()]
@@ -88,7 +88,7 @@ class Pliant:
         return steps + [("tolerance", tolerance) for tolerance in TOLERANCES]
 
     def places_alone(self, problem, method, kind, value):
-        """Returns the centres at the end if each body is simulated alone."""
+        """Simulates each body alone, and returns the centres at the end."""
         places = []
         for body in problem.bodies:
             scene = pliant_contact.write_scene(problem, self.folder, [body])
@@ -123,7 +123,11 @@ def interleaved(problem, engines):
 
 
 def measure(problem, engines, places, rounds, limit):
-    """Returns {(engine, method, setting): [least CPU s, results of judge(), or a text for a failed run]}."""
+    """Returns {(engine, method, setting): [least CPU s, result of judge()]}.
+
+    For a failed run, the message of the failure replaces the result of judge(). limit: after a run of more CPU seconds than
+    this limit, finer settings of the same method are not measured.
+    """
     times = np.arange(round(problem.end / pliant_contact.INTERVAL) + 1) * pliant_contact.INTERVAL
     results, too_long, plan = {}, set(), interleaved(problem, engines)
     for run in plan:
@@ -152,7 +156,8 @@ def arguments():
     parser.add_argument("--engines", type=lambda s: s.split(","), default=["pliant", *PEERS])
     parser.add_argument("--problems", type=lambda s: s.split(","), default=contact_problems.NAMES)
     parser.add_argument("--rounds", type=int, default=3, help="runs per setting; the least time is written")
-    parser.add_argument("--limit", type=float, default=3, help="no finer settings after a run of so many CPU seconds")
+    parser.add_argument("--limit", type=float, default=3,
+                        help="CPU seconds; after a longer run, finer settings of its method are skipped")
     return parser.parse_args()
 
 

@@ -11,9 +11,9 @@ BLOCK_SPEED = 2.0  # m/s, of the block at the start
 
 @dataclass
 class Body:
-    """half: semi-axes of an ellipsoid, half sizes of a box, or (radius, radius, half length of the straight side).
+    """half: semi-axes of an ellipsoid, half sizes of a box, or (radius, radius, half length of the straight side), m.
 
-    velocity: world; spin: angular velocity, body frame; quaternion: w x y z, body to world.
+    velocity: world, m/s; spin: angular velocity, body frame, rad/s; quaternion: w x y z, body to world.
     """
     shape: str  # ellipsoid, ball, box, cylinder or capsule; the axis of the last two is z
     half: np.ndarray
@@ -38,8 +38,8 @@ class Problem:
 
 
 class Bowl:
-    """Triangles of the surface z = x^2 + y^2 (m) over a square grid. The four corners of a cell are in one plane, so that the
-    surface does not depend on the diagonals of the cells.
+    """Triangles of the surface z = x^2 + y^2 (m) over a square grid. The four corners of a cell are in one plane, so the
+    surface does not depend on the diagonals that divide the cells into triangles.
     """
     half_width, cells = 0.5, 20
 
@@ -58,7 +58,7 @@ class Bowl:
         path.write_text("\n".join(lines + [f"f {a} {b} {c}" for a, b, c in (self.triangles + 1).tolist()]) + "\n")
 
     def gap(self, centres, radius):
-        """Returns the distances of balls from the surface; centres: (n, 3), above the surface or near it."""
+        """Returns the distances of balls from the surface, m. centres: (n, 3), m, above the surface or near the surface."""
         spacing = self.line[1] - self.line[0]
         first = np.clip(((centres[:, :2] + self.half_width) / spacing).astype(int), 0, self.cells - 1)
         best = np.full(len(centres), np.inf)
@@ -69,7 +69,7 @@ class Bowl:
         return best - radius
 
     def _gap_of_cell(self, cell, centres):
-        """Distance from the parallelogram of one cell for each centre; negative below its plane."""
+        """Returns the distance of each centre from the parallelogram of one cell, m; negative below the plane of the cell."""
         x0, y0 = self.line[cell[:, 0]], self.line[cell[:, 1]]
         x1, y1 = self.line[cell[:, 0] + 1], self.line[cell[:, 1] + 1]
         corner = np.stack([x0, y0, x0 * x0 + y0 * y0], axis=1)
@@ -78,7 +78,7 @@ class Bowl:
         normal = np.cross(u, v)
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         height = ((centres - corner) * normal).sum(axis=1)
-        # The nearest point of the cell by alternating minimisation over its two coordinates, which converges fast.
+        # The nearest point of the cell is corner + s u + t v. Alternating minimisation over s and t converges fast.
         d, s, t = centres - corner, np.zeros(len(cell)), np.zeros(len(cell))
         uu, vv, uv = (u * u).sum(axis=1), (v * v).sum(axis=1), (u * v).sum(axis=1)
         du, dv = (d * u).sum(axis=1), (d * v).sum(axis=1)
@@ -126,7 +126,10 @@ def product(p, q):
 
 
 def ellipsoids(count, layers, apart=0.25):
-    """Ellipsoids side by side or in layers above a plane, as in bench/contact_bench.cpp. apart: distance of neighbours, m."""
+    """Yields ellipsoids side by side or in layers above a plane, as in bench/contact_bench.cpp.
+
+    apart: distance between the places of neighbours, m.
+    """
     across = math.ceil(math.sqrt(count / layers))
     for i in range(count):
         random = a, b, c = spread(i)
@@ -137,13 +140,13 @@ def ellipsoids(count, layers, apart=0.25):
 
 
 def sliding(count):
-    """Boxes, lying cylinders and lying capsules that slide on the plane from the start."""
+    """Yields boxes, and cylinders and capsules on their sides, that slide on the plane from the start."""
     for i in range(count):
         a, b, c = spread(i)
         shape = ("box", "cylinder", "capsule")[i % 3]
         heading = turned([0, 0, 1], 2 * math.pi * b)
         speed, place = 0.8 + 1.2 * a, np.array([1.5 * (i % 6), 1.5 * (i // 6), 0])
-        if shape == "box":  # it slides along one of its axes, so that the friction has no moment about the vertical
+        if shape == "box":  # a box slides along its first axis, so the friction has no moment about the vertical
             half, pose, towards = 0.04 + 0.04 * np.array([a, b, 0.3 * c]), heading, 2 * math.pi * b
         else:
             half = np.array([0.04 + 0.02 * a] * 2 + [0.06 + 0.04 * c])
@@ -153,7 +156,7 @@ def sliding(count):
 
 
 def in_bowl(count, bowl):
-    """Balls that fall a little, roll and slide in the bowl."""
+    """Yields balls that fall from a small height, roll and slide in the bowl."""
     for i in range(count):
         a, b, c = spread(i)
         radius, turn, away = 0.03 + 0.02 * a, 2 * math.pi * b, 0.15 + 0.2 * c
@@ -181,7 +184,7 @@ NAMES = "block drop slide bowl heap".split()
 
 
 def sliding_block(t):
-    """Returns the exact place (x, y, z) and the kinetic energy of the block at times t, from Coulomb's law."""
+    """Returns the exact centre (m) and the kinetic energy (J) of the block at times t (s), from Coulomb's law."""
     body = make("block").bodies[0]
     slowing = FRICTION * GRAVITY
     t = np.minimum(np.asarray(t, float), BLOCK_SPEED / slowing)

@@ -1,4 +1,4 @@
-"""MuJoCo: elliptic friction cone, Newton solver, the stiffest contacts that are stable by the documentation."""
+"""MuJoCo: elliptic friction cone, Newton solver, the stiffest contacts that the documentation calls stable."""
 import mujoco
 import numpy as np
 

@@ -11,7 +11,7 @@ DISTRIBUTION = "mujoco"
 mujoco.set_mju_user_warning(lambda _: None)  # no messages about runs that fail
 
 IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]  # of `connect`: the stiffest values that MuJoCo accepts
-STEPS_OF_CONNECT = 2  # time constant of `connect` in steps: the shortest that is stable by the documentation
+STEPS_OF_CONNECT = 2  # time constant of `connect` in steps: the shortest that the documentation calls stable
 
 
 def add_body(parent, body, name, pos, quat):

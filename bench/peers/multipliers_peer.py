@@ -1,7 +1,7 @@
-"""Exact multipliers in NumPy: not an engine, but the second method, which confirms the references.
+"""Exact multipliers in NumPy: a second method, which confirms the references. It belongs to no engine.
 
-Each body has 6 velocities. Multipliers, computed with a banded Cholesky factor, make the relative accelerations of
-the joints zero. The 8th-order pair DOP853 integrates the system.
+Each body has 6 velocities. Multipliers make the relative accelerations of the joint points zero. A banded Cholesky
+factor gives the multipliers. The method DOP853 of order 8 integrates the system.
 """
 from functools import partial
 
@@ -64,7 +64,7 @@ class Multipliers:
         return [joints[k] for k in reverse_cuthill_mckee(graph, symmetric_mode=True)]
 
     def _pattern(self, joints):
-        # A side is the point of a joint on a body. The pairs of sides on one body form the blocks of the matrix.
+        # A side is the point of a joint on a body. Each pair of sides on one body contributes a 3 x 3 block to the matrix.
         sides = [(k, body, point, sign) for k, joint in enumerate(joints)
                  for body, point, sign in ((joint.a, joint.ra, 1.0), (joint.b, joint.rb, -1.0)) if body != WORLD]
         self.side_joint = np.array([s[0] for s in sides])
@@ -80,7 +80,7 @@ class Multipliers:
         self.pair_body = self.side_body[self.pair_s]
         sign = self.side_sign[self.pair_s] * self.side_sign[self.pair_t]
         self.pair_scale = (sign * self.inverse_mass[self.pair_body])[:, None, None] * np.eye(3)
-        # sign [r_s] I^-1 [r_t]^T is constant in the body frame.
+        # sign [r_s] I^-1 [r_t]^T is constant in the body frame; [r] is the cross-product matrix of r.
         inverse = 1 / self.inertia[self.pair_body]
         self.pair_turn = sign[:, None, None] * (
             self.side_cross[self.pair_s] * inverse[:, None, :] @ self.side_cross[self.pair_t].transpose(0, 2, 1)

@@ -1,4 +1,4 @@
-"""Common functions of the compiled peers. The peers are built once in the working folder. Each run is a process."""
+"""Common functions of the compiled peers. The peers are built once in the working folder. Each run has its own process."""
 import subprocess
 from pathlib import Path
 

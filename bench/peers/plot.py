@@ -4,8 +4,8 @@
 usage: plot.py PEERS.csv PLIANT.csv FOLDER
 
 PLIANT.csv: work_precision.csv of work_precision (columns problem, method, cpu_ms_per_s, error). Writes
-FOLDER/peers.png and FOLDER/peers_table.csv: CPU ms per simulated second at each error. A run qualifies for an
-error only if the errors of the next two finer runs are at most 3 times its own error.
+FOLDER/peers.png and FOLDER/peers_table.csv: CPU ms per simulated second of the cheapest run with at most each error level.
+A run qualifies for a level only if the errors of the next two finer runs are at most 3 times its own error.
 """
 import csv
 import math
@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 
 LEVELS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 COLUMNS = 3
-NO_ENGINE = "multipliers"  # drawn and tabulated, but not a peer
+NO_ENGINE = "multipliers"  # is drawn and tabulated, but not compared with pliant, because it belongs to no engine
 
 
 def read(path):
@@ -53,8 +53,9 @@ def time_at(points, level):
 
 
 def table(problem, by_method):
-    """Returns a row for each engine (problem, engine, time and method at each level), and a row of ratios of the best time of a
-    peer to that of pliant.
+    """Returns a row for each engine (problem, engine, time and method at each level), and a row of ratios.
+
+    A ratio is the best time of a peer divided by the best time of pliant.
     """
     rows, best = [], {}
     for engine in dict.fromkeys(key[0] for key in by_method):

@@ -1,4 +1,4 @@
-"""Rapier: single precision, ellipsoids are hulls, Coulomb friction; lengths are in units of a body's size."""
+"""Rapier: single precision, ellipsoids are hulls, Coulomb friction; the length unit is the size of a body."""
 import math
 
 import numpy as np
@@ -9,7 +9,7 @@ from contact_problems import FRICTION, GRAVITY
 from hulls import ellipsoid_hull
 
 DISTRIBUTION = "rapier3d"
-SIZE = 0.1  # typical size of a body, m: Rapier derives its permitted overlaps from it
+SIZE = 0.1  # typical size of a body, m; Rapier derives the permitted overlaps from this length
 
 
 def collider_of(body):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Compares the reference poses, from which errors are measured, with the poses of a second method.
 
-usage: references.py OUT.csv [JOINT_REFERENCE.csv]
+usage: references.py OUT.csv [PRECISION_REFERENCE.csv]
 
-A: Taylor series with 20 and with 25 digits. The others: exact multipliers (multipliers_peer.py) with two tolerances. Columns:
-reference_difference: difference of the two methods that compute the reference; second_difference: difference between
-the two runs of the second method; agreement: difference between the reference and the second method. All differences
-are computed by errors.error().
+The second method for A is a Taylor series, with 20 and with 25 digits. For other problems it is exact multipliers
+(multipliers_peer.py) with two tolerances. Columns: reference_difference: difference between the two methods of work_precision
+that compute the reference; second_difference: difference between the two runs of the second method; agreement: difference
+between the reference and the second method. errors.error() computes the last two columns.
 """
 import csv
 import sys

@@ -28,10 +28,11 @@ COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per
 # The settings of a method, from coarse to fine, are its ladder. A ladder ends after
 # - an error below SMALLEST,
 # - STALLED successive runs below ROUNDING without an improvement of the smallest error of the ladder,
-# - FAILURES failed runs, or a failed run that ends later than 4 times the time limit after the start of the ladder,
+# - FAILURES failed runs,
+# - a failed run that ends more than 4 times the time limit after the start of the ladder,
 # - a run that crashed or was killed,
 # - a run of more than half the time limit, or
-# - a run of more than a 16th of the limit that is DOMINATED times slower than a run whose error is not larger.
+# - a run of more than a 16th of the limit that is DOMINATED times slower than another run whose error is not larger.
 SMALLEST, ROUNDING, STALLED = 1e-10, 1e-7, 3
 FAILURES = 6
 DOMINATED = 30
@@ -91,7 +92,7 @@ def available(engine, folder):
 
 def serve(connection, engine, name, folder, index):
     """Runs in a separate process: receives settings of one ladder and sends the results of their runs."""
-    os.setsid()  # a group of its own: the parent kills it with all processes started here
+    os.setsid()  # a new process group, so that the parent can kill this process with all its child processes
     run = ladders(engine, name, folder)[index][3]
     while True:
         setting = connection.recv()

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Installs the peers in FOLDER and runs the problems in them:  bench/peers/run.sh FOLDER [options of run.py]
-# Runs contact problems instead:      bench/peers/run.sh FOLDER --contact [options of contact.py]
-#   or contact_precision.py, or contact_pairs.py:  --contact-precision, --contact-pairs
+# Installs the peers in FOLDER and runs the problems of problems.py in the peers:  bench/peers/run.sh FOLDER [options of run.py]
+# With --contact, --contact-precision or --contact-pairs after FOLDER, runs contact.py, contact_precision.py or
+# contact_pairs.py instead of run.py:  bench/peers/run.sh FOLDER --contact [options of contact.py]
 # Requires a C++ compiler, CMake and libeigen3-dev for the compiled peers, and libsimbody-dev for Simbody.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -17,7 +17,7 @@ esac
 mkdir -p "$folder"
 python="$folder/venv/bin/python"
 [ -x "$python" ] || python3 -m venv "$folder/venv"
-# Packages are installed one by one, so that only an engine without a wheel for this machine is skipped, with a message.
+# Packages are installed one by one. If an engine has no wheel for this machine, only this engine is skipped, with a message.
 sed 's/#.*//' "$here/requirements.txt" | while read -r package; do
   [ -z "$package" ] || "$python" -m pip install -q --disable-pip-version-check "$package" ||
     echo "$package: not installed" >&2

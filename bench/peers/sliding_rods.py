@@ -1,10 +1,10 @@
-"""A check of the reference of the problem "slide" that uses no engine: equations of a rod that lies on two points.
+"""Checks the reference of the problem "slide" without an engine, by the equations of a rod that touches the plane at two points.
 
-A cylinder or capsule on its side touches the plane at the points q = s l e - r z, s = 1 and -1, relative to its centre: e is
-its axis, r its radius and l the half length of its straight side. Its heading psi, its rotation about z and its rotation
-about e determine its motion. The normal forces N follow from m g = sum N and from the moment about the horizontal direction
-z x e, in which the rod cannot turn. Friction is -mu N u / sqrt(|u|^2 + eps^2) with the velocity u of the point; for eps -> 0
-this is Coulomb's law.
+A rod is a cylinder or capsule on its side. Relative to its centre, it touches the plane at the points q = s l e - r z, s = 1
+and -1: e is its axis, r its radius and l the half length of its straight side. The unknowns are the centre, the heading of e,
+the rate of rotation about z and the rate of rotation about e. The normal forces N follow from m g = sum N and from the moment
+about the horizontal direction z x e, about which the rod cannot rotate. Friction is -mu N u / sqrt(|u|^2 + eps^2) with the
+velocity u of the point; for eps -> 0 this is Coulomb's law.
 """
 import numpy as np
 
@@ -16,12 +16,16 @@ UP = np.array([0, 0, 1.0])
 
 
 def accelerations(bodies, heading, velocity, turn, roll):
-    """Returns the accelerations of the centre, of the rotation about z and of that about the axis."""
+    """Returns the accelerations of the centre (m/s^2), and of the rotations about z and about the axis (rad/s^2).
+
+    Rows of `bodies`: mass, moments of inertia across and along the axis, radius, half length. heading: rad; velocity: m/s;
+    turn, roll: rates of rotation about z and about the axis, rad/s.
+    """
     mass, across, along, radius, half = bodies.T
     axis = np.stack([np.cos(heading), np.sin(heading), 0 * heading], axis=1)
     omega = turn[:, None] * UP + roll[:, None] * axis
     points = [s * half[:, None] * axis - radius[:, None] * UP for s in (1, -1)]
-    forces = []  # per newton of normal force
+    forces = []  # contact force for a normal force of 1 N
     for q in points:
         u = velocity + np.cross(omega, q)
         forces.append(UP - FRICTION * u / np.sqrt((u * u).sum(axis=1) + REGULARISATION**2)[:, None])
@@ -35,7 +39,7 @@ def accelerations(bodies, heading, velocity, turn, roll):
 
 
 def places(problem):
-    """Returns (numbers of the lying rods, their centres at the end)."""
+    """Returns (numbers of the rods among the bodies, centres of the rods at the end in m)."""
     rods = [i for i, body in enumerate(problem.bodies) if body.shape != "box"]
     chosen = [problem.bodies[i] for i in rods]
     axes = rotations(np.array([body.quaternion for body in chosen]))[:, :, 2]

@@ -1,5 +1,5 @@
-// The search for a term of an evaluation that is not finite. The order of the search is that of
-// TermCheck::first_bad_term(): a term is searched after the terms that it is computed from.
+// The search for a term of an evaluation that is not finite. TermCheck::first_bad_term() defines the order:
+// each term is checked after the terms from which it is computed.
 #include <cmath>
 #include <string>
 
@@ -97,7 +97,7 @@ class TermCheck {
     return {};
   }
 
-  /// Returns the name of the force of a part, without loads, that is not finite.
+  /// Returns the name of the first force of a part that is not finite. Loads are not checked.
   std::string own_force(const PartModel& m, const PartWorkspace<double>& w) const {
     const Part& part = *m.part;
     const VecMax<double> stretch = w.q_s - m.rest_at(t_);

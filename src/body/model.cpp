@@ -355,7 +355,7 @@ void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
   std::vector<int> rows;
   for (const int j : island.joints) rows.push_back(joints_[static_cast<std::size_t>(j)].rows);
 
-  // The augmented matrix of Eq. (14): its nodes are parts and joints, with a block for each side.
+  // The augmented matrix of Eq. (14). The nodes of its graph are parts and joints; the edges are the sides.
   std::vector<int> sizes;
   std::vector<std::pair<int, int>> edges;
   double pairs = 0;
@@ -378,7 +378,7 @@ void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
     island.factor_values = eliminate(sizes, edges, solver.order).values;
     return;
   }
-  // The matrix W_c: its nodes are joints, with a block for each pair of joints on a part.
+  // The matrix W_c. The nodes of its graph are joints; the edges are the pairs of joints on a part.
   std::vector<std::pair<int, int>> meetings;
   for (const int i : island.parts)
     for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])

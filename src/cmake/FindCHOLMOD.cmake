@@ -15,7 +15,7 @@ else()
 endif()
 
 # Sets ${result} to the version that a header defines as ${prefix}_MAIN_VERSION, ${prefix}_SUB_VERSION and
-# ${prefix}_SUBSUB_VERSION. The header is the first of those in ARGN that is found.
+# ${prefix}_SUBSUB_VERSION. The header is the first file name in ARGN that is found.
 function(_cholmod_read_version prefix result)
   find_file(_cholmod_header NAMES ${ARGN} HINTS ${CHOLMOD_INCLUDE_DIR} PATH_SUFFIXES suitesparse NO_CACHE)
   set(version "")

@@ -17,7 +17,7 @@ target_compile_options(pliant_own_sources INTERFACE -Wall -Wextra -Wpedantic -Ws
 if(PLIANT_WERROR)
   target_compile_options(pliant_own_sources INTERFACE -Werror)
 endif()
-# GCC collects its own garbage less often: 7 to 20 % less time to compile, for 25 % more memory.
+# With these parameters GCC collects garbage in its own memory less often: 7 to 20 % less time to compile, 25 % more memory.
 target_compile_options(pliant_own_sources INTERFACE
                        "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-expand=400 --param ggc-min-heapsize=1000000>")
 if(PLIANT_NATIVE)
@@ -46,7 +46,7 @@ if(PLIANT_FUZZ)
 endif()
 
 # Precompiles headers: pliant_precompile(TARGET HEADERS <a.h> ...) for this target, or pliant_precompile(TARGET LIKE OTHER)
-# to take those of OTHER, which has the same options. Clang saves an eighth of its time. GCC gains nothing.
+# to reuse the precompiled headers of OTHER, which has the same options. Clang saves an eighth of its time. GCC gains nothing.
 function(pliant_precompile target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LIKE" "HEADERS")
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

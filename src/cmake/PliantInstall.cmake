@@ -5,7 +5,8 @@ include(GNUInstallDirs)
 set(PLIANT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
 
 # Makes the library pliant_${name} the component ${name}. The arguments after the name are the libraries that it links.
-# Libraries in pliant:: become components that the new component needs. Others become packages that a client has to find.
+# Libraries in pliant:: become components that the new component needs. Other libraries become packages that a client has
+# to find.
 function(pliant_install_library name)
   if(NOT PLIANT_INSTALL)
     return()

@@ -33,7 +33,7 @@ if(NOT Eigen3_FOUND)
   find_package(Eigen3 5 QUIET CONFIG)
 endif()
 pliant_require(Eigen3_FOUND libeigen3-dev "")
-# A client must compile with an Eigen of the same major version as that of the library, and not with an older one.
+# A client must compile with an Eigen of the same major version as the library, and not with an older version.
 pliant_package(Eigen VERSION ${Eigen3_VERSION} TARGETS Eigen3::Eigen CLIENT "Eigen3 ${Eigen3_VERSION} CONFIG")
 
 find_package(Threads REQUIRED)

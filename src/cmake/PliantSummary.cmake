@@ -40,7 +40,7 @@ function(_pliant_pad text width result)
   set(${result} "${text}${spaces}" PARENT_SCOPE)
 endfunction()
 
-# If an option is off, prints a line with what is not built because of it.
+# If an option is off, prints a line with the option and the text `what`, which names the parts that are not built.
 function(_pliant_off_line option what)
   if(NOT ${option})
     _pliant_pad("${option}" 18 option)

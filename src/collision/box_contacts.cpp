@@ -1,5 +1,5 @@
-// Separating axis test of two boxes, clipping of a face to the opposite face, and the nearest point of a
-// ball.
+// Separating axis test of two boxes, clipping of a face to the opposite face, and the point of a ball that is
+// nearest to a box.
 #include <pliant/collision/box_contacts.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace pliant {
 
 namespace {
 
-/// An axis is preferred to axes tested later whose gaps are larger by at most this, in sizes (largest half
-/// size) of the smaller box. Face normals are tested first.
+/// An axis replaces the best axis so far only if its gap is larger by more than this, in sizes (largest half
+/// size) of the smaller box. Face normals are tested first, and thus preferred.
 constexpr double kFaceFirst = 1e-6;
 /// Two edges are parallel, and have no crossing, if the sine of the angle between them is below this.
 constexpr double kParallelEdges = 1e-6;
@@ -24,8 +24,8 @@ constexpr double kSameCorner = 1e-6;
 struct Axis {
   Vec3<double> n = Vec3<double>::Zero();  ///< unit vector from a to b, world
   double gap = -std::numeric_limits<double>::infinity();
-  /// Numbers of an axis of box a and of box b. If of_b is -1, n is along the axis of a, and vice versa. If
-  /// neither is -1, n is along the cross product of both axes.
+  /// Numbers of an axis of box a and of box b. If of_b is -1, n is along the axis of a. If of_a is -1, n is
+  /// along the axis of b. Otherwise n is along the cross product of both axes.
   int of_a = -1, of_b = -1;
 };
 
@@ -76,7 +76,8 @@ Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) 
 }
 
 /// A face of a box that is clipped by four planes. In exact arithmetic it has at most eight corners. With
-/// rounding, each plane adds at most half as many corners again (4, 6, 9, 13, 19), so 20 entries suffice.
+/// rounding, each plane makes the number of corners at most 1.5 times as large (4, 6, 9, 13, 19), so 20
+/// entries suffice.
 struct Polygon {
   std::array<Vec3<double>, 20> corners;
   std::size_t n = 0;

@@ -18,7 +18,7 @@ namespace {
 /// Edges of the sample mesh along an eighth of a great circle.
 constexpr int kSurfaceResolution = 6;
 /// The reach of a part with dynamic parameters is estimated from a coarse mesh with kCoarseEdges edges along
-/// an eighth of a great circle. It is the largest distance of a mesh point from the origin, times
+/// an eighth of a great circle. The estimate is the largest distance of a mesh point from the origin, times
 /// kCoarseMargin.
 constexpr int kCoarseEdges = 2;
 constexpr double kCoarseMargin = 1.1;
@@ -34,15 +34,15 @@ constexpr double kSameHeight = 1e-6;
 /// one flat face if the middle of their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
 /// The test whether a sample point is already the lowest point uses a stencil of kCorner spacings.
-/// Differences of heights up to kHeightRounding, in sizes, are rounding, so that they start no search on a
-/// flat face.
+/// Differences of heights up to kHeightRounding, in sizes, are ignored as rounding errors. They would
+/// otherwise start a search on a flat face.
 constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
 /// A stencil whose second difference of heights is smaller than this, in sizes, is flat.
 constexpr double kFlatStencil = 1e-13;
 /// The search ends at this size of its stencil, in spacings.
 constexpr double kMinStencil = 1e-8;
-/// A direction is near a pole if the sine of its angle to the z axis is at most this. Such directions are not
-/// described by latitude and longitude.
+/// A direction is near a pole if the sine of its angle to the z axis is at most this. Latitude and longitude
+/// are not used near a pole.
 constexpr double kNearPole = 0.2;
 constexpr int kMaxStencilHalvings = 60;
 
@@ -136,7 +136,7 @@ std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double fla
 
 /// Returns the outermost of some points, at most four: the point A farthest from the first of them, the point
 /// B farthest from A, and on either side of the line through A and B the point farthest from this line. some:
-/// column numbers of p. Points nearer than `same` (m) to each other are one.
+/// column numbers of p. Of points nearer than `same` (m) to each other one is returned.
 std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
                                     double same) {
   std::vector<Eigen::Index> chosen;
@@ -227,8 +227,8 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
   return kCoarseMargin * part_->s(samples().coarse, values).colwise().norm().maxCoeff();
 }
 
-// Longer than 60 lines, because every stage of the pattern search works on the stencil, the best point and
-// the radius. Small functions would have to pass these three to each other.
+// This function is longer than 60 lines, because every stage of the pattern search uses the stencil, the best
+// point and the radius. Small functions would have to pass these three to each other.
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
   // A stencil of three by three places surrounds the best point. Quadratics through its heights propose the

@@ -117,9 +117,10 @@ ContactRule ContactRules::on_fixed(int part, int thing) const {
   return rule;
 }
 
-/// Returns the pair of the settings that applies to two things; nullptr if there is none. A pair that names
-/// both things has priority over a pair that names one of them and a group of the other. The latter has
-/// priority over a pair that names two groups. Among equals, the last pair of the settings has priority.
+/// Returns the pair of the settings that applies to two parts, planes or obstacles; nullptr if there is none.
+/// A pair that names both of them has priority over a pair that names one of them and a group of the other. A
+/// pair with one group has priority over a pair with two groups. Among pairs of equal priority the last one
+/// is used.
 const ContactPair* ContactRules::pair(int a, int b) const {
   if (last_pair_.empty()) return nullptr;
   const std::vector<int>&of_a = groups_of_[at(a)], &of_b = groups_of_[at(b)];

@@ -1,7 +1,7 @@
 // Deep overlap: each of two parts contains the centre of the other, which can happen at the start of a run.
-// The points of one surface that are deepest inside the other part then lie beyond the centre of that part,
-// where its outward normal points in the wrong direction. The contact normal is
-// the direction n of least depth among a few candidates,
+// The points of one surface that are deepest inside the other part are then beyond the centre of that part,
+// where its outward normal points in the wrong direction. The contact normal is the direction n of least
+// depth among a few candidates,
 //   depth(n) = h_a(-n) + h_b(n) - n . (c_a - c_b),
 // where h_a and h_b are the support functions of the surfaces about their centres.
 #include <limits>
@@ -38,7 +38,7 @@ Vec3<double> ContactFinder::support_point(int i, const Vec3<double>& direction) 
 }
 
 /// Returns whether two parts overlap deeply; if so, appends their contact. A torus never overlaps deeply,
-/// because its centre is outside it.
+/// because its centre is not inside the torus.
 bool ContactFinder::find_deep_overlap(int a, int b, const ContactRule& rule,
                                       std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];

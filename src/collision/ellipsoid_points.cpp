@@ -1,5 +1,5 @@
 // The lowest point of an ellipsoid over a plane, and the point of an ellipsoid at which the radial coordinate
-// of another ellipsoid is least. Newton's method finds the latter.
+// of another ellipsoid is least. Newton's method finds the second point.
 #include <pliant/collision/ellipsoid_points.h>
 
 #include <cmath>

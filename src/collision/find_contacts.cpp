@@ -21,7 +21,7 @@ namespace {
 constexpr double kMaxReportedGap = 0.1;
 /// The boxes of the pair search are enlarged by this share of the size of a part.
 constexpr double kPairMargin = 0.05;
-/// The boxes are also enlarged by half the largest gap of the search. They are computed again if this half
+/// The boxes are also enlarged by half the largest gap of their search. They are computed again if this half
 /// gap exceeds kMaxExcess times the half gap of the present search plus the least margin of the boxes.
 constexpr double kMaxExcess = 2;
 /// Pairs of patches (features/) are kept for at most this many pairs of parts, as a multiple of the number of

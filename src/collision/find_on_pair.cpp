@@ -20,10 +20,11 @@ namespace {
 /// extent), are merged.
 constexpr double kMergeDistance = 0.03;
 /// Whether a contact point is at an edge of b follows from two normals of b. One is at the point; the other
-/// is at a share kInner of the way to the middle of the contact. At an edge their cosine is below
-/// kEdgeCosine.
+/// is at a share kInner of the way to the middle of the contact. At an edge the cosine of the angle between
+/// these normals is below kEdgeCosine.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
-/// Points nearer to the surface of a part than this, in sizes of the part, are on it.
+/// Points nearer to the surface of a part than this, in sizes of the part, are treated as points of the
+/// surface.
 constexpr double kFlush = 1e-4;
 /// Accuracy of the distance to the surface along the thin axis of a part, in thicknesses of the part.
 constexpr double kBisectionTolerance = 1e-12;
@@ -64,8 +65,8 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
     }
     gradient = part_.inside_outside_gradient(in_b, values_);
     const double height = part_.inside_outside(in_b, values_) / gradient.norm();
-    // No point is deeper than half the thickness of b. If f / |grad f| is below this, it is the distance to a
-    // far part of the surface, and the distance along the thin axis is used instead.
+    // No point of b is deeper than half the thickness of b. If -f / |grad f| exceeds this depth, it is the
+    // distance to a far part of the surface, and the distance along the thin axis is used instead.
     return height < -0.5 * thickness_ ? across(in_b, gradient) : height;
   }
   double height(const Vec3<double>& p) const override {
@@ -101,8 +102,8 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   int thin_axis_;  // axis of the least extent of b
 };
 
-// Appends the lowest points of a over b. Longer than 60 lines, because the closed form of two ellipsoids and
-// the general search share the field and the function that adds a contact.
+// Appends the lowest points of a over b. The function is longer than 60 lines, because the closed form of two
+// ellipsoids and the general search share the field and the function that adds a contact.
 void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double max_gap,
                                  std::vector<Contact>& found) const {
   const Placed &on = scratch_->parts[at(a)], &over = scratch_->parts[at(b)];
@@ -203,8 +204,7 @@ void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, do
   keep_outline(found, first, std::min(model_->parts()[at(a)].size, model_->parts()[at(b)].size));
 }
 
-/// Appends the contacts of two convex parts that are not both ellipsoids. Returns whether the pair is such a
-/// pair.
+/// Appends the contacts of two convex parts that are not both ellipsoids. Returns false for other pairs.
 bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, double max_gap,
                                        std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -216,8 +216,7 @@ bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, do
       placed_b{hull_b, other.c, other.R, surfaces_[at(b)]->thickness()};
   const Separation apart = separation(placed_a, placed_b, max_gap);
   if (apart.gap > max_gap) return true;
-  // Of two points the one on the smaller part is the contact point, so that the lever arm of a rolling part
-  // is exact.
+  // The contact points are on the smaller part, so that the lever arm of a rolling part is exact.
   std::vector<PairTouch>& touches = scratch_->of_hulls;
   touches.clear();
   touch_pair(placed_a, placed_b, apart, max_gap, hull_b.size() < hull_a.size(), touches);
@@ -229,7 +228,8 @@ bool ContactFinder::find_between_hulls(int a, int b, const ContactRule& rule, do
 }
 
 /// Appends the contacts of two parts whose shapes never change, from their faces, edges and vertices. Returns
-/// whether this succeeds; if the features of a part are not known or a search fails, nothing is appended.
+/// false and appends nothing if a shape changes, the features of a part are not known, both parts are
+/// ellipsoids, or the search fails.
 bool ContactFinder::find_between_features(int a, int b, const ContactRule& rule, double max_gap,
                                           std::vector<Contact>& found) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -245,8 +245,7 @@ bool ContactFinder::find_between_features(int a, int b, const ContactRule& rule,
           {max_gap, kMaxDepth * thickness, one_point_distance(thickness), std::min(size_a, size_b)},
           scratch_->patch_pairs[{a, b}], touches))
     return false;
-  // Of the two points the one on the smaller part is the contact point, so that the lever arm of a rolling
-  // part is exact.
+  // The contact points are on the smaller part, so that the lever arm of a rolling part is exact.
   for (const CommonNormal& touch : touches)
     found.push_back(contact_at(other.c + other.R * (size_b < size_a ? touch.y : touch.x),
                                other.R * touch.normal, touch.gap, a, b, rule));
@@ -301,8 +300,8 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
   const double size_a = model_->parts()[at(a)].size, size_b = model_->parts()[at(b)].size,
                same = kMergeDistance * std::min(size_a, size_b),
                as_deep = kEqualDepth * std::min(size_a, size_b);
-  // Of two equally deep points the one on the smaller part is kept, so that the lever arm of a rolling part
-  // is exact.
+  // If both points of a contact are equally deep, the point on the smaller part is kept, so that the lever
+  // arm of a rolling part is exact.
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;

@@ -65,7 +65,7 @@ Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
 }
 
 /// Returns a box in the world that contains a part. If the part has dynamic parameters and is no ellipsoid,
-/// it is the box of a ball of radius Placed::reach.
+/// the box is that of a ball of radius Placed::reach.
 Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);

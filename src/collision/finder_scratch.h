@@ -23,8 +23,8 @@ inline constexpr double kBulge = 0.05;
 
 /// A part and its pose.
 struct ContactFinder::Placed {
-  Vec3<double> c;
-  Mat3<double> R;
+  Vec3<double> c;  ///< origin of the body frame, m, world
+  Mat3<double> R;  ///< body frame to world
   Vec3<double> c_dot = Vec3<double>::Zero(),
                omega = Vec3<double>::Zero();  ///< velocities of the prescribed motion, m/s and rad/s, world
   double reach;                               ///< radius of a ball about c that contains the part, m
@@ -59,12 +59,12 @@ struct ContactFinder::Scratch {
     double fastest() const { return c_dot.norm() + c_dot_change.norm() + speed + speed_change; }
   };
   std::vector<Ball> balls;
-  std::vector<Eigen::AlignedBox3d> boxes;
+  std::vector<Eigen::AlignedBox3d> boxes;  ///< of the smooth parts (those without local deformation), world
   BoxTree tree;
-  std::vector<std::pair<int, int>> pairs;
-  /// Enlarged boxes of the smooth parts, and the pairs of boxes that meet. The pairs are valid while each
-  /// part stays inside its box. The boxes are enlarged by wide_reach, half the largest gap of the search, and
-  /// by a margin of at least wide_margin, m.
+  std::vector<std::pair<int, int>> pairs;  ///< pairs of parts whose boxes are near each other
+  /// Enlarged boxes of the smooth parts, and the pairs of enlarged boxes that meet. The pairs are valid while
+  /// each part stays inside its enlarged box. The boxes are enlarged by wide_reach (half the largest gap of
+  /// the search, m) plus a margin of at least wide_margin (m).
   std::vector<Eigen::AlignedBox3d> wide;
   std::vector<std::pair<int, int>> wide_pairs;
   double wide_reach = 0, wide_margin = 0;

@@ -120,8 +120,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood_of(const State& state,
   return further > foreseen.spare ? neighbourhood(state, &after, t, h, reach) : foreseen;
 }
 
-// Longer than 60 lines, because planes, obstacles and pairs update one result in this order. The search of
-// pairs is skipped if no pair can change that result.
+// This function is longer than 60 lines, because planes, obstacles and pairs update one result in this order.
+// The search of pairs is skipped if no pair can change that result.
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, const State* after, double t,
                                                           double h, double reach) const {
   Neighbourhood near;
@@ -147,8 +147,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
           !(planes[k].normal.dot(ball.c) - highest < ball.reach))
         continue;
       near.empty = false;
-      // A half space has no thickness to pass through. But a spinning part may turn its other end down, and a
-      // plane may oscillate.
+      // No part can pass through a half space. But a spinning part may turn its other end below the plane,
+      // and a plane may oscillate.
       near.limit_travel(h * (ball.speed + max_deviation), h * ball.speed_change,
                         kMaxTurnOverPlane * s.parts[at(i)].reach, h, done);
     }

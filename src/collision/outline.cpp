@@ -22,7 +22,7 @@ constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
 constexpr double kMinCorner = 1e-5;
 /// A contact that is deeper than all corners by more than this, in sizes, is kept.
 constexpr double kDeeper = 1e-11;
-/// Up to this many contacts are all kept.
+/// If there are at most this many contacts, all are kept.
 constexpr std::size_t kAlwaysKept = 4;
 
 }  // namespace

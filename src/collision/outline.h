@@ -8,11 +8,11 @@
 
 namespace pliant {
 
-/// Removes those contacts with index >= `first` that are not corners of the convex hull of these contacts. It
-/// keeps the deepest contact. It removes none if there are at most four, if their normals differ, or if their
-/// gaps are not a linear function of the position. Non-penetration at the remaining contacts implies
-/// non-penetration at the removed ones. All contacts from `first` on must belong to one pair. size: size of
-/// the part on a plane, or of the smaller part of a pair, m.
+/// Removes those contacts with index >= `first` that are not corners of the convex hull of these contacts.
+/// The deepest contact is kept. Nothing is removed if there are at most four contacts, if their normals
+/// differ, or if their gaps are not a linear function of the position. Non-penetration at the remaining
+/// contacts implies non-penetration at the removed ones. All contacts from `first` on must belong to one
+/// pair. size: size of the part on a plane, or of the smaller part of a pair, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);
 
 }  // namespace pliant

@@ -156,11 +156,11 @@ Json format_of(const Model& model, const FrameSchedule& schedule) {
        "start and at the end of the step that contains it"}};
   layout["columns"] =
       "an entry with \"name\" is a column, or \"count\" columns with # = 0, 1, ... in the name; an entry "
-      "with \"each\" is, for each of \"parts\" or \"joints\" in order, the columns with that name of its "
-      "kind, with its name for *";
+      "with \"each\" is a set of columns for each item of the list \"parts\" or \"joints\", in order: in the "
+      "kind of the item, the list whose name is \"columns\", with the name of the item in place of *";
   layout["owners"] =
-      "parts: name, kind, first column in q.npy and in v.npy, -1 if it has none; joints: name, kind; the "
-      "kind is the index in \"kinds\"";
+      "parts: name, kind, first column in q.npy and in v.npy, -1 for a part without columns; joints: name, "
+      "kind; the kind is the index in \"kinds\"";
   if (model.body().contact.active)
     layout["support_rows"] =
         "zero or more rows per state: from row `supports` up to, but not including, row `supports_end`, "
@@ -227,7 +227,8 @@ void visit_columns(const nlohmann::json& list, const std::string& owner,
   }
 }
 
-/// Throws RecordingMismatch if the columns of a table of parts in layout.json are not those of the model.
+/// Throws RecordingMismatch if the columns of a table of parts in layout.json differ from the columns of the
+/// model. count: number of columns of the model. expected: returns the name of a column of the model.
 void compare_columns(const nlohmann::json& layout, const char* table, int count,
                      const std::filesystem::path& file, const std::function<std::string(int)>& expected) {
   const std::string before = file.string() + " was recorded from another scene: ";

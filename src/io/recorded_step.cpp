@@ -10,10 +10,10 @@ namespace {
 /// An impact is assumed at the end of a step if the rates jump there by more than this fraction of their
 /// change due to the accelerations.
 constexpr double kJump = 0.5;
-/// Other forces, such as contact, are assumed within a step if two predictions fail: that of the displacement
-/// from the rate and the acceleration at the start, and that of the rate at the end from the mean of both
-/// accelerations. A prediction fails if its error (times 2 / h for the displacement) is more than this
-/// fraction of the change of the rates due to the accelerations.
+/// Other forces, such as contact, are assumed within a step if two predictions fail. The first prediction is
+/// the displacement, from the rate and the acceleration at the start. The second is the rate at the end, from
+/// the mean of the accelerations at both ends. A prediction fails if its error (times 2 / h for the
+/// displacement) is more than this fraction of the change of the rates due to the accelerations.
 constexpr double kPushed = 0.2;
 /// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;
@@ -37,8 +37,8 @@ CoordinateMotion motion_at(const Dynamics& dynamics, const State& state, Workspa
 
 /// Returns the path of the coordinates between two states. Each block of coordinates is a polynomial of
 /// degree 5 through q, its rates and its second derivatives at both states. If there is an impact at the end,
-/// the rate and the second derivative there are not used. If other forces acted within the step, the
-/// polynomial is the cubic Hermite one.
+/// the rate and the second derivative there are not used. If other forces acted within the step, the cubic
+/// Hermite polynomial is used.
 StepPath quintic(const Model& model, const State& low, double h, const State& high) {
   const Dynamics dynamics(model);
   Workspace<double> work;

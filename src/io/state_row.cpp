@@ -74,10 +74,10 @@ std::vector<Column> limit_columns(const Model& model, const PartModel& part) {
 }
 
 std::vector<Column> cluster_columns() {
-  return {{"step_size.*", "s", "length of the next step of its cluster"},
-          {"error.*", "1", "error of the last step of its cluster / tolerance"},
+  return {{"step_size.*", "s", "length of the next step of the cluster of the part"},
+          {"error.*", "1", "error of the last step of the cluster of the part / tolerance"},
           {"contact_residual.*", "m/s", "residual of the contact laws in that step"},
-          {"supports_age.*", "1", "consecutive steps of its cluster with a warm start"}};
+          {"supports_age.*", "1", "consecutive steps of the cluster of the part with a warm start"}};
 }
 
 /// Returns the first columns of modes.npy, which do not depend on the model.

@@ -54,7 +54,7 @@ std::vector<Column> work_columns() {
   columns.push_back({"max_contact_overlap", "m", "largest overlap after a separation"});
   for (const auto& [name, unit] : {std::pair<std::string, const char*>{"worst_contact_residual", "m/s"},
                                    {"worst_contact_overlap", "m"}}) {
-    columns.push_back({name, unit, "the worst one in units of its tolerance"});
+    columns.push_back({name, unit, "violation that is largest in units of its tolerance"});
     columns.push_back({name + ".tolerance", unit, ""});
     columns.push_back({name + ".time", "s", "end of its step"});
   }

@@ -14,7 +14,7 @@ class EigenFactor final : public SparseFactor {
   void do_analyse(const SparseMatrix& A) override { ldlt_.analyzePattern(A); }
 
   bool do_factor(const SparseMatrix& A) override {
-    ldlt_.factorize(A);  // stops only at a pivot that is exactly zero; the pivots before it are valid
+    ldlt_.factorize(A);  // a zero pivot ends factorize() early; the pivots before it are valid
     const Eigen::VectorXd pivots = ldlt_.vectorD();
     for (Eigen::Index k = 0; k < pivots.size(); ++k)
       if (!accept_pivot(ldlt_.permutationPinv().indices()[k], pivots[k])) return false;

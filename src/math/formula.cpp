@@ -63,7 +63,7 @@ class Parser {
   }
 
  private:
-  /// Counts the levels of nesting while it exists.
+  /// Increments the level of nesting during the life of this object.
   struct Level {
     explicit Level(Parser* parser) : p(parser) {
       if (++p->depth_ > Formula::kMaxDepth + 1) {

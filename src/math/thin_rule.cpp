@@ -49,8 +49,8 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, double tolerance) {
   const Eigen::Index n = F.rows();
   // Divide each column by the sum of its absolute values. Then divide each row i by d_i, the square root of
-  // its norm, and multiply the factor c_i by d_i. The unknowns are thus x_i = d_i c_i. They behave like
-  // square roots of weights, because the norm of a row has the weight of its node as a factor.
+  // its norm, and multiply the factor c_i by d_i. The unknowns are thus x_i = d_i c_i. The unknowns behave
+  // like square roots of weights, because the norm of a row has the weight of its node as a factor.
   Eigen::MatrixXd A = F;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
     const double sum = A.col(k).cwiseAbs().sum();

@@ -1,4 +1,4 @@
-// The threads wait for the tasks of a call of run(), fetch task numbers from one counter, and report the end.
+// The threads wait for a call of run(), fetch task numbers from one counter, and signal that no task is left.
 #include <pliant/math/thread_pool.h>
 
 #include <algorithm>

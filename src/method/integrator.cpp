@@ -24,13 +24,13 @@ std::unique_ptr<Integrator> make() {
   return std::make_unique<Method>();
 }
 
-/// Returns the error of a step of h s that ends at t (s) and in which a joint closes. An error of the gap is
-/// in sizes of a part, an error of the rate of the gap in sizes times `slow` (slow_rate(), 1/s). The gap
-/// decays at the rate of the stabilization (1/s) until it is kClosedGap; the projection then removes it at
-/// once. The time of closing is unknown within the step. The error is therefore the largest change of the
-/// gap, or of the rate of the gap, during the step.
+/// Returns the error of a step of h s that ends at t (s) and in which a joint closes. The unit of an error of
+/// the gap is the size of a part; the unit of an error of the rate of the gap is this size times `slow`
+/// (slow_rate(), 1/s). The gap decays at the rate of the stabilization (1/s) until the gap is kClosedGap
+/// sizes; the projection then removes the gap at once. The time of closing within the step is unknown. The
+/// error is therefore the largest change of the gap, or of the rate of the gap, during the step.
 double closing_error(double rate, double slow, double h, double t) {
-  const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // of the time, s
+  const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // error of the time, s
   return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate / slow);
 }
 }  // namespace

@@ -1,4 +1,4 @@
-// The tracks of each picture of a run; its view and its scale of values, computed from the whole motion.
+// The view and the scale of values of a run, computed from the whole motion, and the tracks of each picture.
 #include <pliant/render/film.h>
 
 #include <algorithm>

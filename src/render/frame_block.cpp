@@ -1,5 +1,6 @@
 // View, light and ground of a frame: a perspective projection with the far plane at infinity, an orthographic
-// box around the bodies along the key light (shadow map), another one from below (contact map), and the grid.
+// box around the bodies along the key light (shadow map), a second orthographic box from below (contact map),
+// and the grid.
 #include "frame_block.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The uniform block "Frame" of shaders.cpp (layout std140), which all shaders of a frame use. Positions are
-// relative to the target of the camera, so that single precision is enough far from the origin of the world.
-// Colours are linear.
+// relative to the target of the camera, so that single precision is accurate enough far from the origin of
+// the world. Colours are linear.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The pairs of position and normal (mesh_batch.h) are found once, and again only if the triangles change.
+// The pairs of position and normal (mesh_batch.h) are computed once, and again only if the triangles change.
 // Each frame only collects the positions and normals of the pairs.
 #include "mesh_batch.h"
 

@@ -22,8 +22,8 @@ constexpr double kBytesPerPixel = 16 + 16 + 16 + 3 + 3;
 /// Memory for a GL library with its compiler and its depth maps, bytes, and the addresses that it reserves.
 constexpr double kBytesOfLibrary = 150e6, kAddressesOfLibrary = 650e6;
 
-/// Throws OutOfMemory if a picture needs more than this process can have. needed, available: bytes. limit:
-/// what limits the memory.
+/// Throws OutOfMemory if a picture needs more memory than this process can have. needed, available: bytes.
+/// limit: name of the limit, for the message.
 void require(const std::string& picture, double needed, double available, const char* limit) {
   if (needed <= available) return;
   auto gigabytes = [](double bytes) {

@@ -35,8 +35,8 @@ class Pipeline {
   Pipeline(const GlContext& context, const PassSizes& sizes);
   /// Returns the image of a picture. PassSizes::samples must be 2.
   Image draw(const Picture& picture);
-  /// Draws a picture, without its colour bar, into the lower left corner of framebuffer 0, that of the
-  /// window.
+  /// Draws a picture, without its colour bar, into the lower left corner of framebuffer 0, the framebuffer of
+  /// the window.
   void draw_to_window(const Picture& picture);
   /// Copies the pixels of the last picture to the window again.
   void present();

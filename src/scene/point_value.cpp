@@ -40,7 +40,7 @@ Record by_direction() {
   };
   return {"point_in_direction",
           "A material point of the rest shape, given by a direction from the origin of the part's frame: the "
-          "outermost surface point in this direction; with w < 1, the interior point with its u and v.",
+          "outermost surface point in this direction; with w < 1, the interior point with the same u and v.",
           {required("direction", vector3("1").checked(not_zero),
                     "Direction in the part's frame; its length does not matter.", "[0, 0, 1]"),
            radial(), patch()}};

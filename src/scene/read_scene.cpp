@@ -244,8 +244,8 @@ class SceneReader {
     if (r.given("off")) spring.off = r.number("off");
     springs_.emplace_back(r, &spring);
   }
-  /// Reads all values that may be functions of the state. The parts, joints, springs and tracks that their
-  /// formulas name must exist before.
+  /// Reads all values that may be functions of the state. The parts, joints, springs and tracks that the
+  /// formulas name must already be in the scene.
   void read_actuation(const PointReader& points) {
     for (const auto& [r, joint] : joints_) read_joint_limits(r, *joint, faults_, scene_->body);
     const StateReader states(*scene_, faults_);

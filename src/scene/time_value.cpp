@@ -107,8 +107,8 @@ Type sum_of_functions() {
       array(one_of({number(unbounded(), ""), formula(), key_frames()}), 1)
           .expecting("an array of one or more numbers, formulas of t in quotes, or key frames");
   return record({"sum_of_functions",
-                 "The sum of functions of time. The viewer writes it if the user adds to a gravity that "
-                 "changes in time.",
+                 "The sum of functions of time. The viewer writes such a sum if the user changes a gravity "
+                 "that is a function of time.",
                  {required("sum", terms, "The functions, in the unit of the sum.", "[\"sin(t)\", 1]")}});
 }
 

@@ -284,7 +284,7 @@ class Validator {
       return t.kind == TypeKind::kRecord && t.records[0]->find(key) != nullptr;
     });
   }
-  /// Returns those required keys of a record that an object has, as a list in quotes.
+  /// Returns the required keys of a record that an object has, as a list in quotes.
   static std::string given_of(const Record& record, const JsonValue& object) {
     std::string list;
     for (const Field& field : record.fields)

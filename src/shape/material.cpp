@@ -1,2 +1,2 @@
-// The library compiles the function bodies of this header here.
+// Compiles the functions of material.h once for the library.
 #include <pliant/shape/material-inl.h>

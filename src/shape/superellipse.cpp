@@ -1,2 +1,2 @@
-// The library compiles the function bodies of this header here.
+// Compiles the functions of superellipse.h once for the library.
 #include <pliant/shape/superellipse-inl.h>

@@ -13,15 +13,16 @@ namespace pliant {
 
 namespace fast_motion {
 
-/// Largest number of vectors of the Krylov space, and of numbers in all of them. Large models have at least
-/// kFewVectors.
+/// The Krylov space has at most kMaxVectors vectors, and all vectors have at most kMaxNumbers entries in
+/// total. In large models, kFewVectors vectors are allowed in any case.
 constexpr Eigen::Index kMaxVectors = 160, kMaxNumbers = 20'000'000, kFewVectors = 24;
 /// Largest change of a coordinate in a difference, relative to its scale.
 constexpr double kDifference = 1e-6;
 /// A new vector whose norm is below this share of the largest image consists of errors of the differences.
 constexpr double kVanished = 1e-7;
-/// Derivatives below this share of the accelerations, divided by the scale of the coordinates, are errors of
-/// the differences.
+/// Let r (1/s) be the square root of the largest ratio of an acceleration to the scale of its coordinate.
+/// Derivatives of the accelerations up to kNoise r^2 (by coordinates) and kNoise r (by velocities) are errors
+/// of the differences.
 constexpr double kNoise = 1e-8;
 /// Number of steps of the power method that estimate the typical rate.
 constexpr int kPowers = 6;
@@ -162,7 +163,8 @@ std::vector<FastMotion> FastMotions::motions() const {
   for (Eigen::Index i = 0; i < n; ++i) {
     FastMotion motion;
     motion.value = pairs.values[i];
-    // Motions without stiffness and damping are double roots 0, which errors split into small numbers.
+    // Motions without stiffness and damping have the double eigenvalue 0, which errors split into two small
+    // numbers.
     if (!(std::abs(motion.value) > std::sqrt(fast_motion::kVanished) * largest)) continue;
     motion.combination = pairs.vectors.col(i).normalized();
     motion.residual = H_(n, n - 1) * std::abs(motion.combination[n - 1]) / std::abs(motion.value);

@@ -1,4 +1,4 @@
-// The order of AMD, and the choice of SuiteSparse for joint systems.
+// The elimination order by AMD, and the choice of SuiteSparse for joint systems.
 #include <pliant/solve/suitesparse.h>
 
 #include <cholmod.h>

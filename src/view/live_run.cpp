@@ -15,9 +15,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kSpeedWindow = 0.5, kFirstSpeed = 0.1, kLedgerEvery = 0.1;  // s of wall time
-/// Of a delay of the simulation, at most this much is caught up, s of wall time. Impacts in a scene that
-/// hardly reaches real time delay it by half a second.
+/// Time over which the speed is measured, time before the first measured speed, and time between two ledgers,
+/// s of wall time.
+constexpr double kSpeedWindow = 0.5, kFirstSpeed = 0.1, kLedgerEvery = 0.1;
+/// Largest delay of the simulation that is caught up, s of wall time. In a scene that just reaches real time,
+/// impacts delay the simulation by half a second.
 constexpr double kMaxDelay = 1;
 
 }  // namespace
@@ -49,7 +51,8 @@ class LiveRun::Clock {
   }
   /// Returns how late the last interval ended, s.
   double delay() const { return delay_; }
-  /// Moves the due time by the time that commands took, so that it is not caught up. start: when they began.
+  /// Moves the due time by the time that commands took, so that this time is not caught up. start: wall time
+  /// at which the commands began.
   void skip_since(WallClock::time_point start) { due_ += WallClock::now() - start; }
   /// Measures the speed at a simulated time, s. Returns 0 until kFirstSpeed seconds have passed.
   double speed(double time) {
@@ -65,7 +68,7 @@ class LiveRun::Clock {
   }
   bool ledger_is_old() const { return seconds_since(ledger_) >= kLedgerEvery; }
   void note_ledger() { ledger_ = WallClock::now(); }
-  double interval_cost = 0;  ///< s
+  double interval_cost = 0;  ///< wall time of the last interval, s
 
  private:
   WallClock::time_point due_ = WallClock::now(), measured_ = due_, ledger_ = due_;
@@ -171,7 +174,7 @@ std::vector<TrackSample> LiveRun::take_track_samples() {
   return std::exchange(track_samples_, {});
 }
 
-/// Samples the tracks, unless the time is that of the last sample.
+/// Samples the tracks, unless they were already sampled at this time.
 void LiveRun::sample_tracks() {
   const Simulation& simulation = simulation_.simulation();
   if (simulation_.scene().tracks.empty() || simulation.time() == sampled_time_) return;

@@ -14,8 +14,8 @@ namespace pliant {
 
 namespace {
 
-/// Adds the keys of the next interval, from `now` to `next` (s), to a path that goes to a value. Does nothing
-/// if the path has this value already.
+/// Adds the keys of the next interval, from `now` to `next` (s), to a path, which then ends at `value`. Does
+/// nothing if the path already ends at this value.
 void extend(LinearKeys& path, double value, double now, double next) {
   const double last = path.values().back();
   if (value == last) return;
@@ -176,7 +176,7 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   exact.material = material_at(place.u, place.v, place.w);
   const bool valid = stiffness >= 0 && damping >= 0 && std::isfinite(stiffness + damping);
   const SpringConstants wanted{stiffness, damping},
-      bounded = valid ? bound_drag(wanted, exact) : wanted;  // MultiBody::spring() refuses others
+      bounded = valid ? bound_drag(wanted, exact) : wanted;  // MultiBody::spring() refuses invalid constants
   const Vec3<double> start = PlacedPoint(simulation_->model(), exact).at(state);
   GrowingPath path(now, start);
   Spring& spring =
@@ -214,7 +214,7 @@ std::string LiveSimulation::new_name() const {
   }
 }
 
-/// Makes the simulation of the changed body and continues from a state of the old one.
+/// Makes the simulation of the changed body and continues from a state of the old simulation.
 void LiveSimulation::continue_from(State state) {
   const double start_energy = simulation_->start_energy();
   rebuild();

@@ -69,7 +69,7 @@ void LiveSimulation::find_drive_stiffnesses() {
   }
 }
 
-/// Finds up to which stiffnesses of springs, drives and parameters the fixed steps are stable.
+/// Finds the largest stiffnesses of springs, drives and parameters with which the fixed steps are stable.
 void LiveSimulation::bound_stiffnesses() {
   constexpr double most_of_springs = 10, most_of_drives = 10, most_of_parameters = 100;
   const Integrator& method = simulation_->integrator();
@@ -155,8 +155,9 @@ bool LiveSimulation::is_stable(const LocalStiffness& stiffness, double factor, d
   return stable;
 }
 
-/// Finds up to which factors the fixed steps are stable: the squared frequencies grow with the factor. Leaves
-/// out the parts for which a smaller factor makes the steps unstable: their modes are faster than the steps.
+/// Finds the largest factors with which the fixed steps are stable: the squared frequencies grow with the
+/// factor. Leaves out the parts for which a smaller factor makes the steps unstable: their modes are faster
+/// than the steps.
 void LiveSimulation::bound_local_stiffnesses() {
   constexpr double most = 100, share = 0.8;
   if (local_stiffnesses_.empty()) return;

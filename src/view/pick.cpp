@@ -68,8 +68,8 @@ std::optional<Point> SurfacePoints::at(const Hit& hit) const {
   if (hit.mesh >= shown_.size()) return {};
   const Shown& shown = shown_[hit.mesh];
   const bool torus = shown.part->shape().mesh() == MeshPattern::torus;
-  Vec3<double> direction = Vec3<double>::Zero();                             // of a ball
-  Eigen::Vector2d u = Eigen::Vector2d::Zero(), v = Eigen::Vector2d::Zero();  // cosine and sine, of a torus
+  Vec3<double> direction = Vec3<double>::Zero();                             // unless the part is a torus
+  Eigen::Vector2d u = Eigen::Vector2d::Zero(), v = Eigen::Vector2d::Zero();  // cosine and sine, for a torus
   for (int k = 0; k < 3; ++k) {
     const auto vertex = static_cast<std::size_t>(shown.triangles(k, hit.triangle));
     const Material<double>& m = shown.vertices[vertex];

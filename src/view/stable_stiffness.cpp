@@ -13,11 +13,14 @@ namespace pliant {
 
 namespace {
 
-/// The scene itself uses at most this share of the largest stable K. The rest is for the user.
+/// The scene itself uses at most this share of the largest stable K. The remaining share is for stiffnesses
+/// that the user adds.
 constexpr double kMaxPresentShare = 0.75;
-/// A stiffness is at most this share of the largest stable one, because the effective mass is an estimate.
+/// A stiffness is at most this share of the largest stable stiffness, because the effective mass is an
+/// estimate.
 constexpr double kStiffnessShare = 0.8;
-/// If a damping is reduced, it becomes this share of the largest stable one, so that the stiffness has room.
+/// If a damping is reduced, it becomes this share of the largest stable damping, so that a stiffness can be
+/// added.
 constexpr double kDampingShare = 0.5;
 /// Steps of h resolve a motion with K h^2 and D h up to these numbers.
 constexpr double kResolvedStiffness = 0.25, kResolvedDamping = 0.5;
@@ -28,7 +31,7 @@ bool is_stable(const Integrator& method, double K, double D, double h) {
   return method.growth(MatX<double>::Constant(1, 1, K), MatX<double>::Constant(1, 1, D), h) <= 1 + 1e-9;
 }
 
-/// Returns, by bisection, the largest stable number below an unstable one.
+/// Returns, by bisection, the largest stable number below an unstable number.
 template <class Condition>
 double largest_below(double unstable, Condition&& stable) {
   double low = 0, high = unstable;

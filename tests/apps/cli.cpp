@@ -361,7 +361,7 @@ TEST_CASE("I53: after a kill the run can be resumed to identical files") {
   CHECK(place.motion("r") == place.motion("unbroken"));
 }
 
-TEST_CASE("I55: a run that does not match is not resumed: code 10") {
+TEST_CASE("I55: a run is not resumed if its scene, options or files do not match: code 10") {
   const TestFolder place;
   REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
   CHECK(place.pliant("run top.json -o r --resume --set /parts/0/density=5").code == 10);

@@ -17,13 +17,13 @@ ESTIMATE = re.compile(r"about (\S+) s of computation")
 
 
 def estimate(program, scene):
-    """The estimated time of the steps of a run, s."""
+    """Returns the estimated time of the steps of a run, s."""
     text = subprocess.run([program, "check", scene], check=True, capture_output=True, text=True).stdout
     return float(ESTIMATE.search(text).group(1))
 
 
 def measure(program, scene):
-    """The measured time of the steps of a run, s."""
+    """Returns the measured time of the steps of a run, s."""
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "run"
         subprocess.run([program, "run", scene, "--quiet", "-o", output], check=True, capture_output=True)

@@ -1,5 +1,5 @@
-// Scenes that once crashed, or reported success with a motion without meaning: they run, or end with a
-// message that names the cause, the time and a remedy that works.
+// These scenes once crashed, or reported success with a meaningless motion. Each run must now succeed, or end
+// with a message that names the cause, the time and a remedy that works.
 #include <cmath>
 #include <string>
 
@@ -69,16 +69,16 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   CHECK(has(too_long.err, "of the energy that could move (at most 50 %)"));
   CHECK(has(too_long.err, "energy of part '"));
   CHECK(has(too_long.err, "at t = "));
-  CHECK(place.record("tumbling")["monitors"]["balance_share"] < 0.5);  // of the states that are recorded
+  CHECK(place.record("tumbling")["monitors"]["balance_share"] < 0.5);  // before the failure
   CHECK_FALSE(has(place.motion("tumbling"), "nan"));
   const std::string step = recommended_step(too_long.err);
-  // On a slow machine the time of the trials ends before one is accurate, or before one reaches the end.
+  // On a slow machine, the time for trial runs may end before a trial is accurate or complete.
   if (step.empty())
     CHECK(has(too_long.err, "they did not finish with"));
   else if (has(too_long.err, "but the error of its energy balance is"))
     CHECK(place.pliant(tumbling + step).code == 6);
   else
-    CHECK(place.pliant(tumbling + step).code == 0);  // its error of the energy balance is at most 1 %
+    CHECK(place.pliant(tumbling + step).code == 0);  // the error of its energy balance is at most 1 %
 }
 
 TEST_CASE("open joints that contradict each other do not gain energy") {
@@ -91,10 +91,10 @@ TEST_CASE("open joints that contradict each other do not gain energy") {
 TEST_CASE("limits that contacts press against do not gain energy") {
   const TestFolder place;
   CHECK(run(place, "limits_gain_energy").code == 0);
-  CHECK(place.record("out")["monitors"]["balance_share"] < 0.1);  // a method of order 1
+  CHECK(place.record("out")["monitors"]["balance_share"] < 0.1);  // the method is of order 1
 }
 
-TEST_CASE("a soft body at rest without gravity is complete, although all its energies are rounding") {
+TEST_CASE("a run of a soft body at rest is complete, although all its energies are rounding errors") {
   const TestFolder place;
   for (const char* method : {"auto", "rk4", "semi_implicit_euler"})
     CHECK(monitors_with(place, "at_rest", method)["balance_share"] == 0);
@@ -107,7 +107,7 @@ TEST_CASE("an oscillation that grows slowly ends a run when its error is half of
   CHECK(place.record("out")["progress"]["time"] < 400);  // after 800 s the energy would be 550 times larger
 }
 
-TEST_CASE("joints that cannot hold together end a run with code 4, with their names and the gap") {
+TEST_CASE("joints that cannot be closed together end a run with code 4, with their names and the gap") {
   const TestFolder place;
   const Result strings = run(place, "two_strings");
   CHECK(strings.code == 4);

@@ -23,7 +23,7 @@ void write_scene(const TestFolder& place, int n) {
   set_bytes(place.folder / "large.json", text + "]}");
 }
 
-/// Memory (bytes) of the largest process, and processor time (s) of all processes, that have ended.
+/// Memory (bytes) of the largest child process that has ended, and processor time (s) of all of them.
 struct Usage {
   double bytes, seconds;
 };

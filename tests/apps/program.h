@@ -11,6 +11,7 @@
 
 namespace test {
 
+/// The scene top.json: a spinning ellipsoid with a dynamic twist.
 inline const char* const kTop = R"({
   "gravity": [0, 0, 0],
   "time": {"end": 0.5, "step": 0.001, "integrator": "rk4"},
@@ -20,6 +21,7 @@ inline const char* const kTop = R"({
   "output": {"size": [64, 48]}
 })";
 
+/// Exit code and captured output of a run of the program.
 struct Result {
   int code = -1;
   std::string out, err;

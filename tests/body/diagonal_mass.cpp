@@ -1,4 +1,5 @@
-// Accelerations from the diagonal of M, section 5 of the paper: against M; the energy that this costs.
+// Accelerations from the diagonal of M (section 5 of the paper) are compared with accelerations from the full
+// M. With the diagonal, energy is not conserved.
 #include <Eigen/LU>
 
 #include "catch.h"
@@ -10,7 +11,8 @@ using namespace pliant;
 
 namespace {
 
-/// A solid that tumbles while its twist and taper swing. bend: whether it is asymmetric, too.
+/// Adds a solid that tumbles while its size a1, its taper and its twist oscillate. diagonal: whether its
+/// accelerations are computed with the diagonal of M.
 Part& add_solid(MultiBody& body, bool diagonal) {
   body.gravity.setZero();
   Part& a = test::add(body, "a", "superellipsoid", {"taper", "twist"}, 1000);
@@ -38,7 +40,7 @@ TEST_CASE("with a diagonal mass matrix, a = f / diag(M)", "[mass]") {
   Workspace<double> work, of_diagonal;
   const VecX<double> exact = accelerations(a, work);
   const MatX<double> M = mass_matrix(work.parts[0]);
-  VecX<double> a_r = exact;  // the frame of the part is that of the world at time 0
+  VecX<double> a_r = exact;  // in the body frame, which is the world frame at time 0
   const VecX<double> expected = (M * a_r).cwiseQuotient(M.diagonal());
   CHECK((accelerations(b, of_diagonal) - expected).norm() <= 1e-12 * expected.norm());
   CHECK((exact - expected).norm() > 1e-2 * exact.norm());  // the coupling matters here
@@ -88,7 +90,7 @@ TEST_CASE("with a diagonal mass matrix, a body whose centre of mass is not the o
     simulation.step(0.5);
     turning[diagonal ? 1 : 0] = simulation.state().v.segment<3>(3).norm();
     momentum[diagonal ? 1 : 0] =
-        std::abs(simulation.ledger().momentum.z() / a.total_mass() + 5);  // m/s, from that of free fall
+        std::abs(simulation.ledger().momentum.z() / a.total_mass() + 5);  // m/s, deviation from free fall
   }
   CHECK(turning[0] <= 1e-9);
   CHECK(momentum[0] <= 1e-9);

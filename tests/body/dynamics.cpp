@@ -155,7 +155,7 @@ TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it 
   CHECK((about_centre * alpha - torque).norm() <= 1e-12 * torque.norm());
 }
 
-TEST_CASE("a torque between two parts conserves their momenta, and its work is that of both ends",
+TEST_CASE("a torque between two parts conserves their momenta, and its power is the sum over both parts",
           "[dynamics]") {
   const TimeVector torque(20, test::wave(10, 20, 3), 30);
   for (const bool rigid : {false, true})
@@ -225,7 +225,7 @@ TEST_CASE(
     torque.against = &post;
     CHECK(end() == external);
     // Now the opposite torque acts on the fixed part, and its reaction on the moving part. With Frame::body
-    // its components are along the axes of the fixed part.
+    // the components of the torque are along the axes of the fixed part.
     torque.part = &post;
     torque.against = &part;
     torque.torque = TimeVector(Vec3<double>(-1, -2, -3));

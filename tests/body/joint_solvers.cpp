@@ -1,5 +1,5 @@
-// The two solvers of joints: the blocks of W_c, and the augmented matrix of Eq. (14) with the factorisations
-// of Eigen and SuiteSparse. They give equal motion, and Model chooses between them.
+// The two solvers of joints factor W_c = C_q M^-1 C_q^T by blocks, or the augmented matrix of Eq. (14) by
+// Eigen or SuiteSparse. Both solvers give equal motion, and Model chooses between them.
 #include "catch.h"
 
 #include <algorithm>
@@ -165,8 +165,8 @@ TEST_CASE("extreme mass ratios: the solvers agree after iterative refinement", "
       lightest = body.parts()[0]->total_mass();
     }
     INFO(backend.name);
-    // The bound is 1e-10 m/s^2 plus 100 eps lambda / m, with the rounding eps of a double, the largest joint
-    // force lambda and the mass m of the first link, a light one.
+    // The bound is 1e-10 m/s^2 plus 100 eps lambda / m. eps is the rounding of a double, lambda the largest
+    // joint force, and m the mass of the first link, which is light.
     CHECK((v_dot[0] - v_dot[1]).lpNorm<Eigen::Infinity>() <= 1e-10 + 100 * 2.2e-16 * largest / lightest);
   }
 }

@@ -68,7 +68,7 @@ void check_laws(const F& formula, std::uint64_t seed) {
   }
 }
 
-/// Adds two deforming parts and a rigid one in a closed loop. The loop is also connected to a fixed part, to
+/// Adds two deforming parts and a rigid part in a closed loop. The loop is also connected to a fixed part, to
 /// a moving anchor and, by a string, to the world.
 void loop(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
@@ -196,8 +196,9 @@ TEST_CASE("invalid joints are refused, and the message names them", "[joints]") 
   CHECK_THROWS_WITH(Model(body), "ball 'dead' ties no part that moves");
 }
 
-TEST_CASE("joints within a rigid part are refused for every type, and so is the rule free with stab_beta = 0",
-          "[joints]") {
+TEST_CASE(
+    "joints within a rigid part are refused for every type, as is BaumgarteRule::free with stab_beta = 0",
+    "[joints]") {
   for (const JointInfo& info : all_joints()) {
     MultiBody body;
     Part& a = test::add(body, "a", "ellipsoid", {}, 500);

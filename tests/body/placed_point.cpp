@@ -12,7 +12,8 @@ namespace placed_point_test {
 using namespace pliant;
 
 TEST_CASE(
-    "placed points agree with Model::world_point, with and without local deformation, and with a path") {
+    "placed points agree with Model::world_point, with and without local deformation, and follow a "
+    "prescribed path") {
   MultiBody body;
   Part& soft = body.add(make_part("soft", "ellipsoid", {"twist"}, 1000));
   soft.stiffness({{"twist.angle", 100}}).place({0, 1, 0}).velocity({1, 0, 0}, {1, 2, 3});

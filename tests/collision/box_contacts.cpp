@@ -23,6 +23,7 @@ namespace {
 Mat3<double> rotation(double angle, const Vec3<double>& axis) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
+/// Returns the touches of two boxes with gaps of at most `most` (m).
 std::vector<BoxTouch> touches(const PlacedBox& a, const PlacedBox& b, double most) {
   std::vector<BoxTouch> found;
   touch_boxes(a, b, most, found);
@@ -33,6 +34,7 @@ double min_gap(const std::vector<BoxTouch>& found) {
   for (const BoxTouch& touch : found) gap = std::min(gap, touch.gap);
   return gap;
 }
+/// Returns the largest value of n . x over a box at the origin, m.
 double extent(const PlacedBox& box, const Vec3<double>& n) {
   return (box.R.transpose() * n).cwiseAbs().dot(box.half);
 }

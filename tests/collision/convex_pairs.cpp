@@ -1,5 +1,5 @@
-// Contacts of pairs of convex parts: the gap is the largest separation over all normals, it does not depend
-// on the order of the parts, and the contact points are in both parts to within the gap.
+// Contacts of pairs of convex parts. The gap is the largest separation over all normals, and does not depend
+// on the order of the parts. The contact points are in both parts to within the gap.
 #include "catch.h"
 
 #include <algorithm>
@@ -23,6 +23,7 @@ using Kind = test::SolidKind;
 
 namespace {
 
+/// Returns a superquadric with fixed semi-axes and the given exponents.
 Kind superquadric(const char* name, const char* shape, double eps1, double eps2) {
   return {name, shape, {}, {{"a1", 0.1}, {"a2", 0.07}, {"a3", 0.05}, {"eps1", eps1}, {"eps2", eps2}}};
 }
@@ -64,7 +65,7 @@ struct Pair {
   }
 };
 
-/// The support function of a part at the origin, in the direction m of the body frame, from the parameters.
+/// Returns the support function of a part at the origin, m, from its parameters. m: direction, body frame.
 double support(const Part& part, const Vec3<double>& m) {
   const ParameterValues<double> values = part.parameters().rest();
   const double shear = part.parameters().find("shear.sx") >= 0 ? 0.5 : 0.0;
@@ -107,7 +108,8 @@ TEST_CASE("the gap of convex parts is the largest separation over all normals", 
         const Vec3<double> normal = found[0].normal;
         CAPTURE(trial, gap, normal.transpose());
         value.note(std::abs(gap - s(normal)));
-        // Contact points are in both parts, or at most the gap outside; the gap does not depend on the order.
+        // Contact points are inside both parts, or outside by at most the gap. The gap does not depend on the
+        // order.
         for (const Contact& contact : found)
           for (int i = 0; i < 50 && gap > -0.01; ++i) {
             const Vec3<double> m = draws.vector(1).normalized();
@@ -120,8 +122,8 @@ TEST_CASE("the gap of convex parts is the largest separation over all normals", 
         double swapped_gap = 1;
         for (const Contact& contact : swapped.contacts(1)) swapped_gap = std::min(swapped_gap, contact.gap);
         if (gap > -0.01) order.note(std::abs(swapped_gap - gap));
-        // A shallow overlap has one maximum. A deep one has several, and the search starts from 13 normals
-        // only.
+        // In a shallow overlap the separation has one maximum over the normals. In a deep overlap it has
+        // several maxima, and the search starts from 13 normals only.
         double best = gap;
         for (int i = 0; i < 1000; ++i) best = std::max(best, s(draws.vector(1).normalized()));
         CHECK(best - gap <= (gap < -0.01 ? -0.3 * gap : 1e-8));

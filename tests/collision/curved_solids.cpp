@@ -85,7 +85,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// Adds a part of a kind. dynamic: with all parameters of its chain and sizes as degrees of freedom.
+/// Adds a part of a kind. dynamic: whether its sizes and the parameters of its chain are degrees of freedom.
 Part& add(MultiBody& body, const Kind& kind, bool dynamic) {
   Part& part = body.add(make_part("a", kind.shape, kind.chain, 1000));
   part.rest(kind.rest);
@@ -163,8 +163,9 @@ double largest_on_circle(const F& f) {
   return f(0.5 * (from + to));
 }
 
-/// Returns the largest value of m . x over a part, without the derivatives of its support function: of
-/// corners or rims, or of the surface by a pattern search from sample points.
+/// Returns the largest value of m . x over the points x of a part, m, without derivatives of the support
+/// function. The candidates are the corners of a box, the rims of a cylinder, and for other shapes the
+/// results of a pattern search on the surface from the best sample point.
 double support(const Part& part, const Vec3<double>& m) {
   const ParameterValues<double> values = part.parameters().rest();
   auto height_of = [&](const Material<double>& material) { return m.dot(part.s({material}, values).col(0)); };
@@ -236,7 +237,7 @@ TEST_CASE("the gap of convex pairs of tapered and bent solids is the largest sep
       Worst value, better;
       for (int trial = 0; trial < 4; ++trial) {
         const Eigen::Quaterniond R_a = random_rotation(draws), R_b = random_rotation(draws);
-        // Separate, or overlapping a little.
+        // The parts are separate, or overlap a little.
         Vec3<double> to_b = draws.vector(1).normalized();
         MultiBody body;
         body.contact.between_parts = true;

@@ -1,7 +1,7 @@
 // Contacts of pairs in which a part is not convex. The least gap is the least distance of densely sampled
-// surfaces, both surfaces have the contact normal at the contact, and contacts depend neither on the order of
-// the parts nor on earlier searches. Contacts of parts that lie on each other are the corners or ends of
-// their common face or edge.
+// surfaces. At the contact both surfaces have the contact normal. Contacts depend neither on the order of the
+// parts nor on earlier searches. Contacts of parts that lie on each other are the corners or ends of their
+// common face or edge.
 #include "catch.h"
 
 #include <algorithm>
@@ -65,7 +65,8 @@ Eigen::Matrix3Xd surface_points(const Part& part) {
   return part.s(Surface(part, 8).material(), part.parameters().rest());
 }
 
-/// Returns the least distance of points of two surfaces, m, and the difference of these two points.
+/// The least distance between sample points of two surfaces a and b, m, and the vector from the nearest point
+/// of a to the nearest point of b, m.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   Vec3<double> difference = Vec3<double>::Zero();
@@ -221,7 +222,7 @@ TEST_CASE("solids that are not convex lie on each other on several points around
   const Kind box{"box", "box", {}, {{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}};
   struct Stack {
     const Kind &lower, &upper;
-    double height;  ///< of the upper origin above the lower one, m
+    double height;  ///< height of the origin of the upper part above the origin of the lower part, m
   };
   for (const Stack& stack : {Stack{twisted_box, twisted_box, 0.16}, Stack{torus, torus, 0.04},
                              Stack{box, torus, 0.12}, Stack{box, twisted_box, 0.18}}) {
@@ -262,7 +263,7 @@ TEST_CASE("edges of separate solids that pass each other do not touch", "[contac
 }
 
 TEST_CASE("contacts of pointed superquadrics are found where their surfaces overlap", "[contact][long]") {
-  // Up to an exponent of 1.4 common normals find them, above it the search on both surfaces.
+  // For exponents up to 1.4, common normals find the contacts; above 1.4, a search on both surfaces does.
   Draws draws(11);
   for (const double exponent : {0.65, 1.3, 1.5, 1.8}) {
     CAPTURE(exponent);
@@ -317,9 +318,9 @@ TEST_CASE("two tori that overlap by more than half their thickness touch", "[con
 }
 
 TEST_CASE("a vertex touches a hollow face only within the radius of curvature of the face", "[contact]") {
-  // A corner of a small box in the hole of a ring points across the hole, whose radius is 0.04 m. The
-  // distance from the corner to the ring ahead is largest, not least, among the points of the inner circle
-  // near it.
+  // The hole of a ring is a hollow face, and its radius of curvature is 0.04 m. A small box is in the hole,
+  // and one of its corners points across the hole. Among the points of the inner circle ahead of the corner,
+  // the point straight ahead has the largest distance from the corner, not the least.
   const Kind cube{"cube", "box", {}, {{"a1", 0.004}, {"a2", 0.004}, {"a3", 0.004}}};
   Pair pair(cube, kinds()[0]);
   pair.part_a.place({-0.02, 0, 0},
@@ -329,7 +330,8 @@ TEST_CASE("a vertex touches a hollow face only within the radius of curvature of
   for (const Contact& contact : found) CHECK(contact.gap < 0.04);
 }
 
-TEST_CASE("of contacts that overlap none is dropped", "[contact]") {
+TEST_CASE("all overlapping contacts of two tori are kept, but at most eight contacts without overlap",
+          "[contact]") {
   Pair pair(kinds()[0], kinds()[0]);
   for (const double overlap : {0.0, 1e-3}) {
     pair.part_b.place({0, 0, 0.04 - overlap});

@@ -1,5 +1,5 @@
-// Contacts are compared with closed forms, the closed forms of ellipsoids with the search for other shapes,
-// and the pairs of the broad phase with all pairs of near boxes.
+// Contacts are compared with closed forms. The closed forms of ellipsoids are compared with the search for
+// other shapes, and the pairs of the broad phase with all pairs of near boxes.
 #include "catch.h"
 
 #include <algorithm>
@@ -179,7 +179,8 @@ TEST_CASE("the closed forms of ellipsoids agree with the support functions of ot
       body.contact.pairs.push_back({"b", "plane", false});
       return contacts_of(body, most);
     };
-    // The closed form measures the radial coordinate; at a small depth it agrees with the least translation.
+    // The closed form measures a gap by the radial material coordinate. At a small depth this gap agrees with
+    // the least translation that separates the ellipsoids.
     for (double step = 1; step > 1e-8; step *= 0.5)
       apart += contacts("ellipsoid", -1e-6).size() < 2 ? -step : step;  // one contact is with the plane
     while (contacts("ellipsoid", -1e-6).size() < 2) apart -= 1e-8;
@@ -191,7 +192,7 @@ TEST_CASE("the closed forms of ellipsoids agree with the support functions of ot
       const double between = (found[k].x - searched[k].x).norm();
       CHECK(between < 1e-5);
       // The inside-outside function f is stationary at the contact. The factor 1 / |grad f|, which converts f
-      // to a gap, is not.
+      // to a gap, is not stationary.
       const double tolerance = 1e-9 + 10 * std::abs(found[k].gap) * between;
       CHECK(std::abs(found[k].gap - searched[k].gap) <= tolerance);
       CHECK((found[k].normal - searched[k].normal).norm() < 1e-5);
@@ -203,8 +204,8 @@ TEST_CASE("faces whose edges coincide to rounding touch at all corners", "[conta
   Draws draws(29);
   auto rounding = [&] { return Vec3<double>(1e-12 * draws.vector(1)); };
   for (int trial = 0; trial < 500; ++trial) {
-    // Two thirds of the pairs are upright: there, rounding decides the order of the corners. The others are
-    // rotated.
+    // Two thirds of the pairs are upright; for these pairs, rounding decides the order of the corners. The
+    // other pairs are rotated.
     const Eigen::Quaterniond R = trial % 3 < 2 ? Eigen::Quaterniond::Identity() : random_rotation(draws);
     // The edges coincide along y. Along x they coincide in every second trial; otherwise the upper box is
     // displaced.
@@ -239,7 +240,7 @@ TEST_CASE("named pairs use their own rules, and joined parts touch only if their
       body.contact.active = true;
       body.contact.between_parts = between;
       std::vector<Part*> balls;
-      for (int i = 0; i < 3; ++i)  // each overlaps the next one
+      for (int i = 0; i < 3; ++i)  // each part overlaps the next part
         balls.push_back(&body.add(make_part("ball" + std::to_string(i), "sphere", {}, 1000))
                              .rest({{"r", 0.501}})
                              .place({static_cast<double>(i), 0, 0}));

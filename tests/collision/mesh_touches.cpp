@@ -1,4 +1,4 @@
-// The vertices that find_touches() finds inside another mesh are those of a comparison with every triangle.
+// find_touches() and a comparison with every triangle find the same vertices inside another mesh.
 #include "catch.h"
 
 #include <algorithm>
@@ -39,8 +39,9 @@ double square_to(const Vec3<double>& x, const std::array<Vec3<double>, 3>& p) {
   return inside ? height * height : nearest;
 }
 
-/// Returns whether x is straight behind the nearest triangle of a mesh. Of equally near triangles the one
-/// with the largest height of x decides.
+/// Returns whether x is behind the nearest triangle of a mesh, and whether the nearest point of this triangle
+/// is the projection of x onto its plane. Among equally near triangles, the triangle with the largest
+/// distance of x from its plane decides.
 bool is_inside(const Vec3<double>& x, const PlacedMesh& m) {
   std::vector<std::pair<double, double>> triangles;  // squared distance, height
   double nearest = std::numeric_limits<double>::infinity(), gap = 0;
@@ -111,7 +112,8 @@ TEST_CASE("vertices in a shallow dent are inside", "[collision]") {
   Draws draws(3);
   int inside = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    // The feet of points near the axis of a dent are outside the triangles that meet there, by slope * depth.
+    // A point close below the vertex of the dent is projected onto the plane of an adjacent triangle. The
+    // projection is outside this triangle, by slope * depth.
     const double slope = std::pow(10, draws.uniform(-5, -3)), depth = draws.uniform(0.01, 0.1) * edge;
     Eigen::Matrix3Xd dented = flat;
     dented(2, middle) -= slope * edge;

@@ -12,6 +12,7 @@
 
 namespace pliant::test {
 
+/// A shape with a chain of deformations and rest values. name: description for messages.
 struct SolidKind {
   const char *name, *shape;
   std::vector<std::string> chain;

@@ -25,8 +25,8 @@ constexpr Eigen::Index kDense = 24 * kResolution * kResolution + 2;  // vertices
 struct Kind {
   std::string shape;
   std::vector<std::string> links;
-  std::map<std::string, double> rest, dynamic;  // dynamic: with the value of the comparison
-  Eigen::Index vertices;                        // of the sparse surface
+  std::map<std::string, double> rest, dynamic;  // dynamic: values at which surfaces are compared
+  Eigen::Index vertices;                        // number of vertices of the sparse surface
 };
 
 /// A body with one part of this kind.
@@ -62,7 +62,7 @@ TEST_CASE("a sparse surface covers the same surface with fewer vertices", "[coll
       {"box", {"shear"}, {{"shear.sx", 0.4}}, {}, 8},
       {"box", {"bend"}, {{"a3", 3}}, {{"bend.angle", 0.9}}, 4 * (n + 1)},
       {"box", {"bend"}, {{"a3", 3}, {"bend.angle", 1.2}}, {}, 4 * (n + 1)},
-      // The bend is oblique to the sides: they become cones, whose generators are straight.
+      // The bend is oblique to the sides. The sides become cones, whose generators are straight.
       {"box", {"bend"}, {{"bend.direction", 0.7}}, {{"bend.angle", 0.9}}, 4 * (n + 1)},
       {"box", {"twist"}, {}, {{"twist.angle", 1.1}}, kDense},
       // Triangles without area at the tip contain no points.

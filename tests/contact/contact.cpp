@@ -33,7 +33,7 @@ void floor(MultiBody& body) {
 Eigen::Quaterniond tilted(double angle) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3<double>::UnitY()));
 }
-constexpr double kG = 9.81;
+constexpr double kG = 9.81;  // m/s^2
 
 /// A method and the tolerance of its error control. A tolerance of 0 means fixed steps.
 struct Method {
@@ -132,8 +132,8 @@ TEST_CASE("a resting part stays at rest while another part bounces", "[contact]"
 }
 
 TEST_CASE("a part that rests with a parameter at its limit takes few steps with a tolerance", "[contact]") {
-  // The weight is 2.1 times the elastic force at the limit. In a motion without contact this force would move
-  // the parameter away from its limit.
+  // The weight is 2.1 times the elastic force at the limit. In a motion without contact the elastic force
+  // would move the parameter away from its limit.
   for (const char* method : {"esdirk", "dop853"}) {
     MultiBody body;
     Part& part = test::add(body, "ball", "ellipsoid", {}, 100);
@@ -230,7 +230,7 @@ TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
   }
 }
 
-TEST_CASE("a ball slides, then rolls with 5/7 of its speed, a hollow one with 3/5", "[contact]") {
+TEST_CASE("a ball slides, then rolls with 5/7 of its speed, a hollow ball with 3/5", "[contact]") {
   for (const bool hollow : {false, true}) {
     MultiBody body;
     body.contact.friction = 0.3;
@@ -507,7 +507,7 @@ TEST_CASE("the most specific rule for a pair applies, and of equally specific ru
   };
   is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts takes precedence over pairs of groups
   is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group take precedence over two groups
-  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects b and c, and no pair names both
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects b and c, and no pair rule names both
   is(rules.of_parts(2, 3), false, 0.1, 0.2);
   is(rules.of_parts(0, 3), true, 0.1, 0.2);
   is(rules.on_plane(0, 0), true, 0, 1);

@@ -113,6 +113,8 @@ struct Gain {
   test::Worst energy, balance;
   double sum = 0, remaining = 0;
 };
+/// Runs `steps` steps of h (s). substep_counts: numbers of substeps with which the error of a step is
+/// estimated.
 Gain gain(const Build& build, const std::string& method, double h, int steps,
           const std::vector<int>& substep_counts = {2, 4}) {
   MultiBody one, other;
@@ -200,8 +202,8 @@ TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no
   // A thin rod slides on the floor, inclined by `angle`, with its lower tip ahead of its centre. The mass of
   // the rod is m, the speed of the tip v, and s and c are the sine and cosine of the angle. If 3 mu s c > 1 +
   // 3 c^2, no motion with finite forces obeys Coulomb's law; if the rod also rotates away from the floor,
-  // more than one motion does. The solution is an impulse without a collision, which stops the tip at once.
-  // Its components along and normal to the floor are m v (1 + 3 c^2) / 4 and 3 m v s c / 4.
+  // more than one motion obeys it. The solution is an impulse without a collision, which stops the tip at
+  // once. Its components along and normal to the floor are m v (1 + 3 c^2) / 4 and 3 m v s c / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})

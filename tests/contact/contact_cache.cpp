@@ -34,6 +34,7 @@ void pyramid(MultiBody& body, int rows) {
     }
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
+/// Returns the weight of all parts, N.
 double weight(const MultiBody& body) {
   double mass = 0;
   for (const auto& part : body.parts()) mass += part->total_mass();
@@ -96,7 +97,7 @@ TEST_CASE("a heavy part on light ones needs iterations only in cold steps with t
   Simulation warm(body, "rk4"), cold(body, "rk4");
   const long warm_sweeps = sweeps(warm, 44, [](State&) {}), cold_sweeps = sweeps(cold, 44, clear_cache);
   CAPTURE(warm_sweeps, cold_sweeps);
-  CHECK(cold_sweeps <= 44 * 20);  // the first round, of at most 12 sweeps, suffices
+  CHECK(cold_sweeps <= 44 * 20);  // on average at most 20 sweeps in a step
   CHECK(warm_sweeps <= 6 * 20);
   CHECK(warm.step_counters().contact_residual < 1e-11);
   CHECK(warm.state().v.norm() < 1e-11);
@@ -268,7 +269,7 @@ void cushion(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
-TEST_CASE("the contact cache works for a part on a soft one with an implicit method", "[contact][long]") {
+TEST_CASE("the contact cache works for a part on a soft part with an implicit method", "[contact][long]") {
   MultiBody body;
   cushion(body);
   Simulation warm(body, "linearly_implicit"), cold(body, "linearly_implicit");
@@ -281,8 +282,8 @@ TEST_CASE("the contact cache works for a part on a soft one with an implicit met
              cold_sweeps = sweeps(cold, 22, clear_cache, 1e-3);
   CAPTURE(warm_sweeps, cold_sweeps);
   CHECK(cold_sweeps >= 22);
-  // A step of soft contact is a whole step and two halves. The second half starts from the cache of the first
-  // half even if the cache of the state is cleared.
+  // A step with soft contact is computed as a whole step and as two halves. The second half starts from the
+  // cache of the first half even if the cache of the state is cleared.
   CHECK(3 * warm_sweeps < 2 * cold_sweeps);
   CHECK((warm.state().q - cold.state().q).lpNorm<Eigen::Infinity>() < 1e-9);
   CHECK(cached_floor_force(warm.state()).z() == Approx(weight(body)).epsilon(1e-2));
@@ -332,7 +333,7 @@ TEST_CASE("cached forces without a load disappear", "[contact]") {
 
 TEST_CASE("isolated contacts are cached only if impulses are predicted, and lost contacts are removed",
           "[contact]") {
-  const bool predicts = GENERATE(false, true);  // not with a tolerance
+  const bool predicts = GENERATE(false, true);  // impulses are predicted with fixed steps only
   MultiBody body;
   for (int i = 0; i < 3; ++i) {
     Part& part = body.add(make_part("ball" + std::to_string(i), "sphere", {}, 1000));

@@ -31,6 +31,7 @@ void lattice(MultiBody& body, int across, int high, const Vec3<double>& corner =
             .place(corner + Vec3<double>(i, j, k + 0.5));
 }
 
+/// Contacts and their impulses.
 struct Solved {
   std::vector<Contact> contacts;
   ContactSolution solution;

@@ -1,5 +1,6 @@
 // The tolerance of contact (ContactSettings::tolerance): violations of the laws of contact and remaining
-// overlaps are within it, errors follow it, and looser tolerances need fewer iterations.
+// overlaps are within the tolerance, errors fall with the tolerance, and looser tolerances need fewer
+// iterations.
 #include "catch.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr double kHalf = 0.1, kStep = 2e-3;  // m, s
 
-/// Adds a pyramid of boxes, or of balls that touch, on a floor. speed: of all, downwards, m/s.
+/// Adds a pyramid of boxes, or of balls that touch, on a floor. speed: downward speed of all parts, m/s.
 void pyramid(MultiBody& body, int rows, const char* shape, double speed = 1) {
   const bool balls = std::string(shape) == "sphere";
   const double apart = balls ? 2 : 2.1, above = balls ? std::sqrt(3.0) : 2;  // in half sizes
@@ -41,11 +42,13 @@ void pyramid(MultiBody& body, int rows, const char* shape, double speed = 1) {
   body.contact.restitution = balls ? 0 : 0.3;
 }
 
+/// Coordinates and counters at the end of a run.
 struct Outcome {
   VecX<double> q;
   StepCounters counters;
 };
 
+/// Simulates the fall of a pyramid of this shape for 0.03 s, with a tolerance of contact.
 Outcome outcome(const char* shape, const std::optional<double>& tolerance) {
   MultiBody body;
   pyramid(body, 6, shape);
@@ -112,7 +115,7 @@ TEST_CASE("a tolerance of contact that is out of range is refused", "[contact]")
 TEST_CASE("a violation that no impulse prevents exceeds the tolerance, and its time is recorded",
           "[contact]") {
   // A joint presses a ball through the floor with a constant speed from the time 0.2 s on.
-  double last_limit = 0;  // of the overlap, m
+  double last_limit = 0;  // limit of the overlap for the previous tolerance, m
   for (const std::optional<double>& tolerance :
        {std::optional<double>(), std::optional<double>(1e-5), std::optional<double>(0.1)}) {
     MultiBody body;
@@ -133,7 +136,7 @@ TEST_CASE("a violation that no impulse prevents exceeds the tolerance, and its t
     CHECK_FALSE(counters.worst_overlap.is_allowed());
     CHECK(counters.worst_overlap.value == Approx(0.05).margin(1e-3));
     CHECK(counters.worst_overlap.time == Approx(0.3));
-    CHECK(counters.worst_overlap.tolerance >= last_limit);  // a tolerance makes the limit no stricter
+    CHECK(counters.worst_overlap.tolerance >= last_limit);  // a larger tolerance does not lower the limit
     last_limit = counters.worst_overlap.tolerance;
   }
 }

@@ -1,5 +1,5 @@
-// The works of drag, damping and dampers while impulses hold a body: those of the motion with impulses, not
-// of the motion without them.
+// The works of drag, damping and dampers while impulses act on a body. The ledger has the works of the motion
+// with the impulses, not of the motion without them.
 #include "catch.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kGravity = 9.81, kMass = 1000 * 0.2 * 0.2 * 0.2;
+constexpr double kGravity = 9.81, kMass = 1000 * 0.2 * 0.2 * 0.2;  // m/s^2, kg
 
 Part& box_on_floor(MultiBody& body) {
   body.contact.friction = 0.2;
@@ -47,7 +47,7 @@ TEST_CASE("drag and dampers of a box that rests on a floor do no work") {
     body.spring("damper", point(part, kPi / 2, 0), world(0, 0, 1), 0, 40);
   };
   const auto hinge_with_drive = [](MultiBody& body) {
-    // The box is held at one side and rests on the other one.
+    // The hinge supports the box at one side, and the floor supports the other side.
     Part& part = box_on_floor(body).damping(0, 0, 5);
     const Joint& hinge = body.hinge("hinge", world(-0.1, 0, 0.1), point(part, 0, kPi), {0, 1, 0});
     body.drive("drive", hinge).damping = 0.5;
@@ -61,9 +61,10 @@ TEST_CASE("drag and dampers of a box that rests on a floor do no work") {
     for (const auto& [name, build] : cases) {
       const double coarse = work_at_rest(method, build, 0.01), fine = work_at_rest(method, build, 0.005);
       CAPTURE(method, name, coarse, fine);
-      // Falls of 0.01 s in a row against a drag of 5/s would do the work 5 kMass (kGravity 0.01)^2 / 3 in a
-      // second: 0.05 J in 0.4 s.
-      // implicit_midpoint has the power in the middle of a step only, which is of second order.
+      // Without impulses the box would fall from rest in each step of 0.01 s. With a drag of 5/s, the mean
+      // power of the drag in such a step would be 5 kMass (kGravity 0.01)^2 / 3, which gives 0.05 J in 0.4 s.
+      // implicit_midpoint evaluates the power in the middle of a step only, with a work error of second
+      // order.
       const bool midpoint = std::string(method) == "implicit_midpoint";
       CHECK(coarse < (midpoint ? 0.02 : 1e-3));
       CHECK((fine < coarse / (midpoint ? 3.5 : 6) || fine < 1e-9));
@@ -97,7 +98,7 @@ TEST_CASE("the works of a box that slides against drag are those of the closed f
   }
 }
 
-TEST_CASE("the work of drag of a bouncing ball is the same for sequences of impacts and impacts at once") {
+TEST_CASE("the work of drag of bouncing balls is equal for sequential and simultaneous impacts") {
   std::vector<double> works;
   for (const ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential}) {
     MultiBody body;

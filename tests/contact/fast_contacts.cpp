@@ -30,6 +30,8 @@ Eigen::Quaterniond random_rotation(Draws& draws) {
                             draws.uniform(0.1, 1))
       .normalized();
 }
+/// Sets position c (m), orientation R, velocity c_dot (m/s, world) and angular velocity omega (rad/s, body)
+/// of a part.
 void set_motion(const Model& model, int part, const Vec3<double>& c, const Eigen::Quaterniond& R,
                 const Vec3<double>& c_dot, const Vec3<double>& omega, State& state) {
   const PartModel& m = model.parts()[static_cast<std::size_t>(part)];
@@ -103,9 +105,9 @@ ShotResults shoot(const std::string& at, const std::string& shape, int shots, Dr
   }
   return results;
 }
-/// Shoots parts of all shapes at all targets. `fast_shots` is the number of shots for each pair of a shape
-/// and a target whose contacts have closed forms or few sample points, `slow_shots` the number for each other
-/// pair.
+/// Shoots parts of all shapes at all targets. fast_shots: number of shots for a shape and a target whose
+/// contacts have closed forms or few sample points. slow_shots: number of shots for any other shape and
+/// target.
 void shoot_all(int fast_shots, int slow_shots) {
   Draws draws(11);
   for (const std::string at : {"plane", "mesh", "body", "plate"})

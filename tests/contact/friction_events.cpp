@@ -1,6 +1,5 @@
 // Sliding that begins, stops or reverses in runs to a tolerance: a table of problems with closed forms, whose
-// errors fall with the tolerance; and impacts of a hinged bar, whose restitution does not depend on the
-// steps.
+// errors fall with the tolerance. The restitution of a hinged bar does not depend on the steps.
 #include "catch.h"
 
 #include <algorithm>
@@ -19,9 +18,9 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kGravity = 9.81, kRadius = 0.1;
+constexpr double kGravity = 9.81, kRadius = 0.1;  // m/s^2; radius of the ball, m
 
-/// A scene and the exact position of one of its parts at its end.
+/// A scene and the exact position of one part at the end of the run.
 struct Problem {
   const char* name;
   double end;  ///< s
@@ -35,7 +34,7 @@ void floor(MultiBody& body, double friction) {
   body.contact.friction = friction;
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Adds a floor that moves along x. x: a formula of its position, m.
+/// Adds a floor that moves along x. x: formula of the displacement of the floor, m.
 void belt(MultiBody& body, double friction, const char* x) {
   body.contact.friction = friction;
   body.plane("belt", TimeVector(TimeFunction::formula(x), 0, 0), {0, 0, 1});
@@ -47,7 +46,7 @@ Part& block(MultiBody& body, double x = 0, double speed = 0) {
       .place({x, 0, 0.05})
       .velocity({speed, 0, 0}, {0, 0, 0});
 }
-constexpr double kBlockMass = 1000 * 0.4 * 0.4 * 0.1;
+constexpr double kBlockMass = 1000 * 0.4 * 0.4 * 0.1;  // kg
 Vec3<double> on_floor(double x) {
   return {x, 0, 0.05};
 }
@@ -68,16 +67,17 @@ Eigen::Quaterniond turned(double angle, const Vec3<double>& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
-/// Position after t seconds with the speed v and the acceleration a.
+/// Returns the displacement after t seconds with the initial speed v and the acceleration a.
 double moved(double v, double a, double t) {
   return v * t + 0.5 * a * t * t;
 }
-/// Distance in which the speed v decreases to zero with the deceleration a.
+/// Returns the distance in which the speed v decreases to zero with the deceleration a.
 double stopped(double v, double a) {
   return v * v / (2 * a);
 }
 
-// A plane that rises along -x at this angle, and positions on it at a height above it.
+// The angle at which the plane of slope() rises along -x, rad. on_slope() returns the point at the distance s
+// uphill from the origin and at a height above the plane, m.
 constexpr double kSlope = 0.5;
 void slope(MultiBody& body, double friction) {
   body.contact.friction = friction;
@@ -89,7 +89,8 @@ Vec3<double> uphill() {
 Vec3<double> on_slope(double s, double height) {
   return s * uphill() + height * Vec3<double>(std::sin(kSlope), 0, std::cos(kSlope));
 }
-/// Acceleration uphill by gravity and by this share of the largest normal force, m/s^2.
+/// Returns the acceleration uphill by gravity and by an uphill friction force, m/s^2. friction: the friction
+/// force divided by the normal force.
 double along_slope(double friction) {
   return kGravity * (friction * std::cos(kSlope) - std::sin(kSlope));
 }
@@ -101,23 +102,24 @@ void block_uphill(MultiBody& body, double friction) {
       .velocity(3 * uphill(), {0, 0, 0});
 }
 
-/// Returns the position of a ball with this speed and spin (rad/s) on a floor of the given speed: it slides
-/// until it rolls.
+/// Returns the position (m) at time t of a ball that starts with a speed (m/s) and a spin (rad/s) on a floor
+/// that moves at a constant speed. The ball slides until it rolls.
 double sliding_ball(double speed, double spin, double floor_speed, double friction, double t) {
   const double slip = speed - kRadius * spin - floor_speed, a = (slip > 0 ? -1 : 1) * friction * kGravity,
                rolls = std::abs(slip) / (3.5 * friction * kGravity);
   return moved(speed, a, rolls) + (speed + a * rolls) * (t - rolls);
 }
 
-// A block on a spring: its frequency (rad/s), its friction, and the displacement at which the spring is as
-// strong as friction.
+// A block on a spring: angular frequency (rad/s), coefficient of friction, and the displacement (m) at which
+// the force of the spring equals the largest friction force.
 constexpr double kFrequency = 10, kSpringFriction = 0.2;
 constexpr double kStuck = kSpringFriction * kGravity / (kFrequency * kFrequency);
 void on_spring(MultiBody& body, double x) {
   Part& b = block(body, x);
   body.spring("spring", point(b, 0, 0, 0), world(-2, 0, 0.05), kBlockMass * kFrequency * kFrequency, 0, 2);
 }
-/// The amplitude falls by 2 kStuck in every half swing.
+/// Returns the position at time t of the block on the spring, if it starts at rest at x. The amplitude falls
+/// by 2 kStuck in every half period.
 Vec3<double> oscillator(double x, double t) {
   for (double sign = 1; std::abs(x) > kStuck && t > 0; sign = -sign) {
     const double swing = std::min(t, kPi / kFrequency);
@@ -126,7 +128,8 @@ Vec3<double> oscillator(double x, double t) {
   }
   return on_floor(x);
 }
-/// The block slides on the belt of speed 0.1 m/s from 3 kStuck, sticks to it, and slides again.
+/// Returns the position at time t of the block on the spring and on a belt of speed 0.1 m/s. The block starts
+/// at 3 kStuck, slides, sticks to the belt, and slides again.
 Vec3<double> stick_slip(double t) {
   const double belt_speed = 0.1,
                sticks = (kPi + std::asin(belt_speed / (2 * kStuck * kFrequency))) / kFrequency,
@@ -145,9 +148,9 @@ double zero_of(F&& f, double low, double high) {
   }
   return low;
 }
-/// Returns the position at time t of a block that starts with a speed on a belt at amplitude sin(10 time),
-/// with the friction 0.3. It sticks when it has the speed of the belt, if friction suffices, until the belt
-/// accelerates too much.
+/// Returns the position (m) at time t of a block that starts with the speed v. The position of the belt is
+/// amplitude sin(10 time), and the coefficient of friction is 0.3. If friction suffices, the block sticks
+/// when it has the speed of the belt. It slips when the acceleration of the belt becomes too large.
 double shaken(double amplitude, double v, double t) {
   const double w = 10, a_max = 0.3 * kGravity, step = 1e-4;
   auto speed = [&](double s) { return amplitude * w * std::cos(w * s); };
@@ -172,7 +175,7 @@ double shaken(double amplitude, double v, double t) {
   return x;
 }
 
-/// Adds a plank on the floor and a box that slides on it at 2 m/s.
+/// Adds a plank on the floor and a box that slides on the plank at 2 m/s.
 void box_on_plank(MultiBody& body, double floor_friction) {
   floor(body, 0.5);
   body.contact.pairs.push_back({"plank", "floor", true, floor_friction, {}});
@@ -182,7 +185,8 @@ void box_on_plank(MultiBody& body, double floor_friction) {
       .place({-0.5, 0, 0.2})
       .velocity({2, 0, 0}, {0, 0, 0});
 }
-/// Box and plank slide until they have the same speed, and then stop together.
+/// Returns the position of the box at time t. The box slides on the plank until both have the same speed.
+/// Then they move together; if the floor has friction, they have stopped at time t.
 Vec3<double> box_at(double floor_friction, double t) {
   const double box = 0.4 * 0.4 * 0.2, plank = 2 * 0.4 * 0.1, a = 0.5 * kGravity,
                b = kGravity * (0.5 * box - floor_friction * (box + plank)) / plank, joint = 2 / (a + b),
@@ -341,6 +345,7 @@ struct Run {
   double error;
   std::int64_t steps;
 };
+/// Runs a problem to its end. Returns the error of the position (m) and the number of steps.
 Run run(const Problem& problem, const char* method, double tolerance) {
   MultiBody body;
   problem.scene(body);
@@ -361,7 +366,7 @@ void hinged_bar(MultiBody& body) {
   body.hinge("hinge", point(bar, material_towards({0, 0, 1})), world(0, 0, 0), Vec3<double>::UnitY());
 }
 /// Returns the angular velocity of the bar (rad/s) at time t: it swings until it hits the wall, and rebounds
-/// with 0.6 of its angular velocity. By RK4, with a last step that ends at the wall.
+/// with 0.6 of its angular velocity. The motion is integrated by RK4, with a last step that ends at the wall.
 double exact_spin(double t) {
   const double inertia = 0.25 + (0.02 * 0.02 + 0.25) / 3;
   auto acceleration = [&](double angle) { return -0.5 * kGravity / inertia * std::sin(angle); };

@@ -17,7 +17,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kNu = 0.3, kRadius = 0.1, kDensity = 1000, kG = 9.81;
+constexpr double kNu = 0.3, kRadius = 0.1, kDensity = 1000, kG = 9.81;  // 1, m, kg/m^3, m/s^2
 
 /// E* of the ball against a rigid body, in units of Young's modulus E.
 constexpr double kStiff = 1 / (1 - kNu * kNu);
@@ -25,15 +25,15 @@ constexpr double kStiff = 1 / (1 - kNu * kNu);
 /// A ball of E = 1 and R = 1 that a body force presses onto a smooth rigid plane, in linear elasticity. `sag`
 /// is the distance by which its centre of mass approaches the plane. For small forces the solution tends to
 /// that of Hertz's half space: F = 4/3 E* sqrt(R) sag^(3/2), a^2 = R sag with the contact radius a. Here
-/// pressures on rings about the pole balance the body force. Their displacements are sums over Legendre
+/// pressures on rings about the pole balance the body force. The displacements are sums over Legendre
 /// polynomials P_n(cos theta) (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964). At r = 1
 /// the terms of order n are, with constants A and B and Poisson's ratio nu,
 ///   u_r = [A (n+1)(n-2+4 nu) + B n] P_n,   u_theta = [A (n+5-4 nu) + B] dP_n/dtheta.
 struct PressedBall {
   double sag = 0, contact = 0;  ///< the approach, and the radius of the contact
 
-  /// Applies the force that Hertz's theory gives for the contact radius a. terms: number of Legendre
-  /// polynomials. rings: number of rings; they extend to the polar angle 2 a.
+  /// Presses the ball by the force that Hertz's theory gives for the contact radius a. terms: number of
+  /// Legendre polynomials. rings: number of rings; they extend to the polar angle 2 a.
   explicit PressedBall(double a, int terms = 1500, int rings = 60) {
     const double G = 0.5 / (1 + kNu), K = 1 / (3 * (1 - 2 * kNu)), lambda = K - 2 * G / 3;
     using Array = Eigen::ArrayXd;
@@ -90,7 +90,7 @@ struct PressedBall {
   }
 };
 
-/// An elastic ball of Young's modulus E (Pa), `above` (m) above the plane z = 0.
+/// Adds an elastic ball of Young's modulus E (Pa), `above` (m) above the plane z = 0.
 Part& elastic_ball_above(MultiBody& body, double E, int resolution, double above) {
   body.contact.friction = 0;
   auto& part = body.add<Primitive<Sphere>>("ball", kDensity);

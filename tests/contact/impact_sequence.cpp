@@ -1,6 +1,6 @@
 // Impacts of bodies in a row that touch: Newton's cradle with both laws of ContactSettings::impacts. The law
-// "simultaneous" is Newton's at all contacts at once. With "sequential" impacts of two bodies follow each
-// other, which gives the classical motion of a cradle.
+// "simultaneous" applies Newton's law of restitution at all contacts at once. With the law "sequential",
+// impacts of two bodies follow each other, which gives the classical motion of a cradle.
 #include "catch.h"
 
 #include <algorithm>
@@ -21,8 +21,9 @@ namespace {
 
 constexpr double kRadius = 0.125, kSpeed = 2, kGap = 0.01;  // m, m/s, m
 
-/// A row of balls along x, without gravity. The first `moving` balls touch each other and approach the
-/// others, which touch each other and are at rest, from a distance kGap with kSpeed.
+/// A row of balls along x, without gravity. The first `moving` balls touch each other, and the other balls
+/// touch each other. The first balls approach the other balls, which are at rest, from the distance kGap with
+/// the speed kSpeed.
 struct Row {
   std::vector<double> densities;  ///< kg/m^3, of each ball
   int moving = 1;
@@ -57,8 +58,8 @@ struct Outcome {
   StepCounters counters;
 };
 
-/// Simulates a row until shortly after its impacts. Requires that energy and momentum change as impacts of
-/// these masses change them, and that no ball leaves the row or rotates.
+/// Simulates a row until shortly after its impacts. Checks that the momentum is conserved, that the energy
+/// does not increase, and that no ball leaves the line of the row or rotates.
 Outcome outcome(const Row& row, double tolerance = 0) {
   MultiBody body;
   row.build(body);
@@ -115,7 +116,7 @@ std::vector<double> chain(const Row& row) {
 
 }  // namespace
 
-TEST_CASE("sequential impacts: of equal balls in a cradle, as many leave as have come", "[contact]") {
+TEST_CASE("sequential impacts: as many equal balls leave a cradle as have hit it", "[contact]") {
   for (const double tolerance : {0.0, 1e-8})
     for (const int bystanders : {0, 8})
       for (int n = 2; n <= 7; ++n)
@@ -149,8 +150,9 @@ TEST_CASE("sequential impacts: rows of unequal balls move as chains of impacts o
 }
 
 TEST_CASE("simultaneous impacts: all balls of a cradle after the first leave together", "[contact]") {
-  // Newton's law at all contacts at once: the first ball separates from the second with the speed e v at
-  // which it came. The other contacts do not approach before the impact, and do not separate.
+  // Newton's law of restitution at all contacts at once: the first ball separates from the second with e
+  // times its approach speed. At the other contacts the balls do not approach before the impact, and do not
+  // separate after it.
   for (const double e : {1.0, 0.5, 0.0})
     for (int n = 2; n <= 7; ++n) {
       CAPTURE(e, n);
@@ -168,7 +170,7 @@ TEST_CASE("simultaneous impacts: all balls of a cradle after the first leave tog
 TEST_CASE("sequential impacts: a ball between a wall and a heavy ball; the number of impacts is bounded",
           "[contact]") {
   // With masses of ratio 100^d, the number of impacts of the light ball has the first d + 1 digits of pi
-  // (Galperin 2003). A sequence of two pairs has at most 1020 impacts; those that remain have no rebound.
+  // (Galperin 2003). A sequence with two pairs has at most 1020 impacts; further impacts have no rebound.
   const long most = 1020;
   for (const auto& [ratio, impacts] :
        std::vector<std::pair<double, long>>{{1, 3}, {100, 31}, {1e4, 314}, {1e6, most}}) {
@@ -188,7 +190,7 @@ TEST_CASE("sequential impacts: a ball between a wall and a heavy ball; the numbe
       REQUIRE(simulation.time() < 0.02);
       simulation.step(7e-4);
     }
-    // After a sequence that has reached its limit, another one may follow in the same step.
+    // After a sequence that has reached its limit, another sequence may follow in the same step.
     CHECK(simulation.step_counters().sequential_impacts % most == impacts % most);
     CHECK((simulation.step_counters().contact_cutoffs > 0) == (impacts == most));
     CHECK(simulation.ledger().kinetic <= (1 + 1e-9) * energy);
@@ -196,7 +198,8 @@ TEST_CASE("sequential impacts: a ball between a wall and a heavy ball; the numbe
     CHECK(simulation.state().v[6] - simulation.state().v[0] > -1e-9 * kSpeed);
     if (impacts == most) continue;
     CHECK(simulation.ledger().kinetic == Approx(energy).epsilon(1e-8));
-    // Two successive impacts rotate (sqrt(M) V, sqrt(m) v) by the angle 2 arctan sqrt(m / M).
+    // The heavy ball has the mass M and the velocity V, the light ball m and v. Two successive impacts rotate
+    // (sqrt(M) V, sqrt(m) v) by the angle 2 arctan sqrt(m / M).
     const double angle = static_cast<double>(impacts + impacts % 2) * std::atan(1 / std::sqrt(ratio));
     CHECK(std::abs(simulation.state().v[6]) ==
           Approx(std::abs(std::cos(angle)) * kSpeed).margin(1e-8 * kSpeed));
@@ -282,7 +285,7 @@ double speed_of(const Simulation& simulation, std::size_t part) {
 }  // namespace
 
 TEST_CASE("sequential impacts that are not located: an earlier impact changes the approach", "[contact]") {
-  // The second ball is slow at first. The first impact makes its approach ten times as fast.
+  // The second ball is slow at first. After the first impact, it approaches the third ball ten times as fast.
   MultiBody rising;
   throw_bodies(rising, "sphere",
                {{{-2 * kRadius - 5e-3, 0, 0}, {10, 0, 0}},
@@ -294,7 +297,8 @@ TEST_CASE("sequential impacts that are not located: an earlier impact changes th
   for (std::size_t i = 0; i < 3; ++i)
     CHECK(speed_of(row, i) == Approx(std::vector<double>{0, 1, 10}[i]).margin(1e-10));
 
-  // The third ball pushes the second one obliquely, away from the first one: the approach falls to a third.
+  // The third ball pushes the second ball obliquely away from the first ball. The approach speed of the first
+  // and second balls falls to a third.
   const double angle = 70 * kPi / 180;
   const Vec3<double> along(std::cos(angle), std::sin(angle), 0);
   MultiBody falling;
@@ -347,7 +351,7 @@ TEST_CASE("sequential impacts that are not located: bodies that separate cause n
                       [](const Contact& c) { return c.a.part < 2 && c.plane == 0; }) == 2);
 }
 
-TEST_CASE("sequential impacts to a tolerance of contact: what the solver leaves is no further impact",
+TEST_CASE("sequential impacts to a tolerance of contact: residual velocities cause no further impact",
           "[contact]") {
   // Faces of boxes touch at four contacts, at which the solver leaves velocities within the tolerance.
   for (const double tolerance : {1e-4, 1e-2, 0.1})
@@ -386,8 +390,8 @@ TEST_CASE("sequential impacts to a tolerance of contact: slow bodies rebound whi
 }
 
 TEST_CASE("sequential impacts to a tolerance of contact: a mirrored scene stays mirrored", "[contact]") {
-  // Two fast boxes meet a row from both ends. The box in the middle is heavy, so that the order of its
-  // impacts matters: both are simultaneous.
+  // Two fast boxes meet a row from both ends. The box in the middle is heavy, so that the order of its two
+  // impacts would matter. These two impacts must be simultaneous.
   for (const double tolerance : {1e-6, 1e-3, 1e-2}) {
     CAPTURE(tolerance);
     MultiBody body;

@@ -16,7 +16,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity = 9.81;  // m/s^2
 
 void advance_to(Simulation& simulation, double end) {
   while (simulation.time() < end) simulation.step_up_to(end);
@@ -139,7 +139,8 @@ TEST_CASE("a resting stack stays exactly at rest, in steps limited by the free f
       CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
       CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
     }
-    // The fall in a free step h, g h^2 / 2, is limited to 0.4 times the thickness of a box, 0.2 m.
+    // A box would fall by g h^2 / 2 in a step h without contact. The step is limited so that this fall is at
+    // most 0.4 times the thickness of a box, which is 0.2 m.
     CHECK(simulation.step_counters().steps < 120);
     // Resting contacts alone need no step doubling.
     CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);
@@ -338,7 +339,7 @@ TEST_CASE("a ball that leaves the floor lands again in the same step, at the exa
         .velocity({0, 0, 0.03}, {0, 0, 0});
     Simulation simulation(body, method);
     simulation.step(0.01);
-    // Between its impacts the ball flies for 2 u / g = 6.1 ms.
+    // With the initial velocity u = 0.03 m/s upwards, the ball lands after 2 u / g = 6.1 ms.
     const double since = 0.01 - 2 * 0.03 / kGravity;
     CAPTURE(method);
     CHECK(simulation.step_counters().impacts == 1);

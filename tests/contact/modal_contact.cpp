@@ -26,7 +26,7 @@ namespace {
 
 using Basis = LocalSettings::Basis;
 
-constexpr double kRadius = 0.1;
+constexpr double kRadius = 0.1;  // m
 
 /// Adds an elastic ball whose local deformation is a sum of polynomials of degree 4. E: Young's modulus, Pa.
 Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, double E = 2e5) {

@@ -25,7 +25,8 @@ struct Mesh {
 };
 
 /// Returns a grid of n x n squares over [-1, 1]^2, two triangles each, mapped into space by `map`. Before
-/// that, the inner vertices are displaced at random along x and y, by up to `random` times their spacing.
+/// the map is applied, the inner vertices are displaced at random along x and y, by up to `random` times
+/// their spacing.
 Mesh sheet(int n, double random, const std::function<Vec3<double>(double, double)>& map) {
   Draws draws(7);
   Mesh mesh;

@@ -1,5 +1,5 @@
 // Contact with planes that are active for a short time, and with planes and parts that move to and fro within
-// a step. The order in which two parts are added does not matter. A small part deep in a large one is
+// a step. The order in which two parts are added does not matter. A small part deep in a large part is
 // separated slowly.
 #include "catch.h"
 
@@ -132,7 +132,7 @@ TEST_CASE("a box rebounds equally from a table that was added first or last", "[
   CHECK(first == Approx(last).epsilon(0.02));
 }
 
-TEST_CASE("N54: a small part deep in a much larger one is separated at one size of the small part a second",
+TEST_CASE("N54: a small part deep in a much larger one is separated by one size of the small part per second",
           "[contact]") {
   for (const bool ground_first : {false, true}) {
     MultiBody body;

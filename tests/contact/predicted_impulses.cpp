@@ -1,5 +1,5 @@
-// Fixed steps with resting contacts, whose impulses are predicted: bodies that roll move with an error of
-// second order, and forces that cease or jump leave nothing behind.
+// Fixed steps with resting contacts, whose impulses are predicted. Bodies that roll have errors of second
+// order. If a contact force ends or jumps, its predicted impulse leaves no velocity error.
 #include "catch.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity = 9.81;  // m/s^2
 
 void floor_with_friction(MultiBody& body, double friction) {
   body.contact.active = true;
@@ -37,12 +37,13 @@ void tilted_egg(MultiBody& body, bool dynamic = false) {
   egg.place({0, 0, height}, Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vec3<double>::UnitX())));
 }
 
-/// Returns the coordinates after `end` seconds with steps of h seconds, and the error of the energy balance,
-/// J. h = 0: with a tolerance of 1e-9.
+/// The coordinates at the end of a run, and the error of the energy balance, J.
 struct Result {
   VecX<double> q;
   double balance;
 };
+/// Runs a scene for `end` seconds with steps of h seconds. If h is 0, the steps are those of dop853 with a
+/// tolerance of 1e-9.
 template <class Build>
 Result run(Build&& build, const std::string& method, double h, double end) {
   MultiBody body;
@@ -99,7 +100,7 @@ TEST_CASE("a ball rolls down a slope exactly, with fixed steps of any length", "
 }
 
 TEST_CASE("a force of contact that ceases leaves no velocity behind", "[contact]") {
-  // Gravity turns round, or the floor ends, at the end of a step or in its middle.
+  // Gravity reverses, or the floor is removed, at the end of a step or in the middle of a step.
   const double h = 0.01;
   for (const double turn : {0.1, 0.105})
     for (const bool ends : {false, true}) {
@@ -116,7 +117,7 @@ TEST_CASE("a force of contact that ceases leaves no velocity behind", "[contact]
       for (int i = 0; i < 20; ++i) simulation.step(h);
       const double t = 0.2 - turn, sign = ends ? -1 : 1;
       const double jump =
-          turn == 0.1 ? 1e-9 : 0.51 * h * kGravity;  // in the middle of a step it is first order
+          turn == 0.1 ? 1e-9 : 0.51 * h * kGravity;  // within a step the error is of first order
       CHECK(std::abs(simulation.state().v[2] - sign * kGravity * t) <= jump);
       CHECK(std::abs(simulation.state().q[2] - 0.1 - sign * kGravity * t * t / 2) <= 0.1 * jump);
     }
@@ -144,7 +145,7 @@ TEST_CASE("the reaction of an impact is not predicted", "[contact]") {
   const char* names[] = {"lower", "upper"};
   for (const int i : {0, 1})
     body.add<Primitive<Sphere>>(names[i]).rest({{"r", 0.1}}).place({0, 0, 0.1 + 0.2 * i + 0.3 * i});
-  // Nine more balls: without few moving parts, impacts are not located.
+  // With nine more balls, more than eight parts can move, and impacts are not located.
   for (int i = 0; i < 9; ++i)
     body.add<Primitive<Sphere>>("other" + std::to_string(i)).rest({{"r", 0.1}}).place({1.0 + i, 0, 0.1});
   Simulation simulation(body, "rk4");
@@ -199,7 +200,7 @@ TEST_CASE("the ledger is balanced when bodies with predicted impulses lose conta
     MultiBody body;
     floor_with_friction(body, 0.8);
     body.contact.planes[0].off = 0.253;
-    for (int i = 0; i < 9; ++i) {  // without few moving parts, impacts are not located
+    for (int i = 0; i < 9; ++i) {  // with more than eight moving parts, impacts are not located
       Part& ball = body.add<Primitive<Ellipsoid>>("ball" + std::to_string(i), 1000.0);
       ball.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place({0.5 * i, 0, 0.1});
       ball.velocity({0.2, 1, 0}, {-10, 2, 0});
@@ -209,9 +210,9 @@ TEST_CASE("the ledger is balanced when bodies with predicted impulses lose conta
     for (int i = 0; i < 40; ++i) simulation.step(0.01);
     CAPTURE(damped);
     CHECK(simulation.state().q[2] < 0.02);
-    // The step in which the floor ends has two motions; no other motion is repeated.
+    // The step in which the floor is removed is divided at this time; no step is repeated.
     CHECK(simulation.step_counters().evaluations == 4 * 41);
-    // The energy is 45 J a ball.
+    // The energy is 45 J for each ball.
     CHECK(std::abs(simulation.ledger().balance) < (damped ? 1e-3 : 1e-9));
   }
 }

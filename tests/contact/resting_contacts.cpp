@@ -68,7 +68,7 @@ TEST_CASE("an incremental search for resting contacts agrees with a full search"
             Eigen::Quaterniond(1, draws.uniform(-1, 1), draws.uniform(-1, 1), 0).normalized().coeffs();
       if (m.n_s > 0) state.q[m.q0 + 7] = draws.uniform(0.08, 0.12);
     }
-    if (moving == 20) finder.find(state, 0.5, 0.3);  // a search with a wider gap than the later ones
+    if (moving == 20) finder.find(state, 0.5, 0.3);  // a search with a wider gap than later searches
     const std::vector<Contact> before = resting.near(state, 0.5),
                                all = ContactFinder(model).find(state, 0.5, resting.gap());
     REQUIRE(before.size() == all.size());

@@ -21,7 +21,7 @@ using test::Worst;
 
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kG = 9.81;  // m/s^2
 
 Part& cylinder(MultiBody& body, const std::string& name, double radius, double half_height) {
   return test::add(body, name, "cylinder", {}, 1000)

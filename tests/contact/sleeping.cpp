@@ -1,4 +1,4 @@
-// Sleep of bodies at rest. The state of a sleeping body does not change by a bit and needs no evaluation.
+// Sleep of bodies at rest. The state of a sleeping body keeps all its bits, and the body is not evaluated.
 // Impacts, and changes of the forces, joints and supports of a body, wake it.
 #include "catch.h"
 
@@ -19,7 +19,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kStep = 2e-3;
+constexpr double kStep = 2e-3;  // s
 
 Part& cube(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   Part& part = test::add(body, name, "box", {}, 500);

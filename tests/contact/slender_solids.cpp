@@ -45,7 +45,7 @@ Eigen::Quaterniond rotation_about(double angle, const Vec3<double>& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
-/// Returns the lowest height of a part (m, world) whose frame is at the origin.
+/// Returns the lowest height of a part (m, world) whose frame is at the origin. R: orientation of the part.
 double lowest(const Part& part, const Eigen::Quaterniond& R) {
   const ParameterValues<double> values = part.parameters().rest();
   const Vec3<double> down = R.inverse() * Vec3<double>(0, 0, -1);
@@ -71,7 +71,7 @@ TEST_CASE("slender solids that are dropped on a plane at an angle come to rest o
         Simulation simulation(body, "rk4");
         test::run(simulation, 4, 2000);
         CHECK(simulation.state().v.norm() < 1e-6);
-        // Mirror symmetry: no motion across, and the only rotation is about y.
+        // The scene is symmetric: the solid does not move along y, and rotates only about y.
         CHECK(std::abs(simulation.state().q[1]) < 1e-8);
         CHECK(std::hypot(simulation.state().q[4], simulation.state().q[6]) < 1e-8);
         const Eigen::Quaterniond end(simulation.state().q[3], simulation.state().q[4],
@@ -124,7 +124,7 @@ TEST_CASE("slender solids topple in the plane in which they lean", "[contact]") 
       }
       CHECK(aside < 1e-9);
       CHECK(aside_at_rest < 1e-6);
-      CHECK(simulation.state().q[2] < 2 * r);  // it lies on its side
+      CHECK(simulation.state().q[2] < 2 * r);  // the solid lies on its side
     }
 }
 
@@ -158,7 +158,7 @@ TEST_CASE(
         const Ledger middle = simulation.ledger();
         test::run(simulation, 3, 1500);
         const Ledger after = simulation.ledger();
-        // Resting contact is of first order. Bent rods come to rest, others may roll on.
+        // Errors of resting contact are of first order. Bent rods come to rest; other rods may roll on.
         CHECK(std::abs(middle.balance) < 0.03 * before);
         CHECK(std::abs(after.balance - middle.balance) < 1e-4 * before);
         if (std::string(rod.link) == "bend") CHECK(simulation.state().v.norm() < 1e-14);

@@ -23,7 +23,7 @@ using test::deepest;
 
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kG = 9.81;  // m/s^2
 
 /// Adds a rubber shell with 98 nodes and the radius 0.1 m. air: internal pressure, Pa; 0: none.
 Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, double air = 20) {
@@ -250,12 +250,14 @@ Eigen::Matrix3Xd world_nodes(const Simulation& simulation, int part) {
          simulation.model().position(simulation.state(), part);
 }
 
+/// The mesh of an uneven ground.
 struct Ground {
   Eigen::Matrix3Xd x;
   Eigen::Matrix3Xi triangles;
   int n;
 
-  /// Makes a mesh of n x n squares over [-0.5, 0.5]^2, n = squares. height(u, v) returns its height, m.
+  /// Makes a mesh of n x n squares over [-0.5, 0.5]^2, n = squares. height(u, v) returns the height of the
+  /// mesh, m.
   template <class F>
   Ground(int squares, F&& height) : n(squares) {
     x.resize(3, (n + 1) * (n + 1));

@@ -41,10 +41,10 @@ Numbers<Deform> draw(Draws& draws) {
   if (std::string(Deform::name) == "taper") b *= 0.95;
   return b;
 }
-constexpr double kHalfHeight = 1.7;
+constexpr double kHalfHeight = 1.7;  // m
 /// Returns a random position in a solid that is so slim that no bend in the range folds it. The determinant
-/// of the bend is 1 - k r, with the curvature k and the coordinate r along the direction of the bend. It is
-/// above 0.4.
+/// of the bend is 1 - k r, with the curvature k and the coordinate r along the direction of the bend. In
+/// this solid the determinant is above 0.4.
 Vec3<double> body_point(Draws& draws) {
   return {draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), draws.uniform(-kHalfHeight, kHalfHeight)};
 }
@@ -246,10 +246,10 @@ TEST_CASE("determinants of the deformations agree with closed forms", "[deform]"
   }
 }
 
-// The kernel that applies a link of a chain, the map T(p, h, b) of the position p, the half height h and the
-// parameters b: J <- [F J + T_h dh/da, G_T]. F, T_h and G_T are the derivatives of T by p, h and the dynamic
-// b; a are the parameters of the shape. s1 and s2 are the first and second time derivatives of the position
-// (jet.h). p, h and b change in time.
+// A link of a chain is the map T(p, h, b) of the position p, the half height h and the parameters b. The
+// kernel that applies the link replaces the Jacobian J of the position by [F J + T_h dh/da, G_T]. F, T_h and
+// G_T are the derivatives of T by p, h and the dynamic b, and a are the parameters of the shape. s1 and s2
+// are the first and second time derivatives of the position (jet.h); p, h and b depend on time.
 TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", AllDeforms) {
   constexpr int K = deform_size<TestType>;
   Draws draws(6);
@@ -261,7 +261,8 @@ TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", 
       dynamic[static_cast<std::size_t>(k)] = draws.uniform(0, 1) < 0.6;
       b_dot[k] = dynamic[static_cast<std::size_t>(k)] ? draws.uniform(-1, 1) : 0.0;
     }
-    // J has two columns of the shape, the first of which also changes h, and one column of an earlier link.
+    // The first two columns of J are for parameters of the shape, and the first of these parameters also
+    // changes h. The third column is for a parameter of an earlier link.
     HalfHeight<double> half;
     half.h = Taylor2<double>(kHalfHeight, draws.uniform(-1, 1), draws.uniform(-1, 1));
     half.slope.resize(2);

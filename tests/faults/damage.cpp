@@ -1,5 +1,5 @@
-// Files of a run in which one bit is flipped. `pliant verify` names the damaged file. `pliant run --resume`
-// names it too and refuses it, or gives the files of an unbroken run.
+// One bit is flipped in a file of a run. `pliant verify` names the damaged file. `pliant run --resume`
+// refuses the run and names the file, or gives the files of an uninterrupted run.
 #include <algorithm>
 
 #include "catch.h"
@@ -25,7 +25,7 @@ bool has(const std::string& text, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume does not pass it on",
+TEST_CASE("I55: verify finds one flipped bit in any file of a run, and resume refuses or repairs the run",
           "[long]") {
   const FaultyRun place("--end 0.1", "--obj --quiet");
   REQUIRE(place.run("whole") == 0);

@@ -1,5 +1,5 @@
 // System calls on the files of a run fail. The run ends with code 7 and a message, or does not need the call.
-// Resumed, it gives the files of an unbroken run.
+// The resumed run gives the files of an uninterrupted run.
 #include <algorithm>
 #include <cerrno>
 
@@ -49,7 +49,7 @@ std::vector<int> errors_of(long what) {
   }
 }
 
-/// A call on a file of a run that fails.
+/// A failing call on a file of a run.
 struct Fault {
   long call = 0;
   int error = 0;
@@ -91,8 +91,8 @@ std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
   return place.wrong_after_resume("broken", unbroken);
 }
 
-/// Makes one call fail while the killed run is resumed, and resumes it again. Returns a description of the
-/// first fault, or an empty text.
+/// Makes one call fail while the run in the folder "killed" is resumed, and resumes the run again. Returns a
+/// description of the first fault, or an empty text.
 std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
                                const std::map<std::string, std::string>& unbroken) {
   place.copy("killed", "broken");
@@ -105,7 +105,7 @@ std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
   return place.wrong_after_resume("broken", unbroken);
 }
 
-/// Returns calls on files of a run, each with an error that it can report.
+/// Returns calls on files of a run, each with an error that the call can report.
 std::vector<Fault> possible_faults(const FaultyRun& place, const std::string& more) {
   std::vector<Fault> faults;
   place.traced(
@@ -120,7 +120,8 @@ std::vector<Fault> possible_faults(const FaultyRun& place, const std::string& mo
   return faults;
 }
 
-/// Lets about `count` of the calls on files of a run fail, each in one run.
+/// Makes about `count` of the calls on files of a run fail, one call in each run. Checks that the resumed
+/// runs give the files of an uninterrupted run.
 void check_failures(const std::string& options, const std::string& outputs, std::size_t count) {
   if (!tracing_works()) return;
   const FaultyRun place(options, outputs);

@@ -19,8 +19,8 @@ namespace faults {
 
 namespace fs = std::filesystem;
 
-/// A ball bounces on a plane, with a second one on a ball joint, beside a ball at rest and a twisted body.
-/// All tables of the run have rows.
+/// A scene. A ball bounces on a plane, and a ball joint connects it to a second ball. A third ball is at rest
+/// on the plane, and a twisted body spins. Every table of the run has rows.
 inline const char* const kBounce = R"({
   "time": {"end": 0.3, "step": 0.002, "integrator": "rk4"},
   "parts": [
@@ -38,8 +38,9 @@ inline const char* const kBounce = R"({
   "output": {"frame_rate": 100, "size": [32, 24], "contacts": true}
 })";
 
-/// Returns the text of run.json without what a resumed run may change: wall times, the command line and
-/// threads, how often it was resumed, factorisations, notes on resuming, and its own checksum.
+/// Returns the text of run.json without the entries that a resumed run may change: wall times, the command
+/// line, the number of threads, the number of resumes, the number of factorisations, notes on resuming, and
+/// the checksum of run.json.
 inline std::string lasting_record(const std::string& text) {
   nlohmann::json record = nlohmann::json::parse(text);
   record.erase("wall_seconds");
@@ -71,7 +72,7 @@ inline std::string first_difference(const std::string& text, const std::string& 
   return " at its end";
 }
 
-/// Returns what differs between the files of two runs, for the message of a test; empty if nothing differs.
+/// Returns a description of the differences between the files of two runs, or an empty text.
 inline std::string difference(const std::map<std::string, std::string>& files,
                               const std::map<std::string, std::string>& expected) {
   std::string text;
@@ -97,8 +98,8 @@ inline bool tracing_works() {
 /// A folder with a scene, in which the program runs.
 class FaultyRun {
  public:
-  /// options: of `pliant run`, without those that resume or replace a run. outputs: those that a resumed run
-  /// needs again.
+  /// options: options of `pliant run` that a resumed run reads from its folder. outputs: options that are
+  /// given again when the run is resumed. The options --resume and --force are in neither text.
   explicit FaultyRun(std::string options, std::string outputs = "--quiet")
       : options_(std::move(options)), outputs_(std::move(outputs)) {
     set_bytes(folder_ / "bounce.json", kBounce);
@@ -117,7 +118,7 @@ class FaultyRun {
   }
   /// Runs `pliant verify` for a run and returns the exit code.
   int verify(const std::string& run) const { return shell("'" PLIANT_PROGRAM "' verify " + run); }
-  /// Runs the program under ptrace, see run_traced(). Its output is that of the last command.
+  /// Runs the program under ptrace, see run_traced(). output() then returns the output of this command.
   Ended traced(const std::string& run, const std::string& more,
                const std::function<Action(const Call&)>& at_call, bool with_paths = false) const {
     std::vector<std::string> words{PLIANT_PROGRAM, "run", "bounce.json", "-o", run};
@@ -133,7 +134,7 @@ class FaultyRun {
     if (code != 0) return "the resumed run ended with " + std::to_string(code) + ": " + output();
     return difference(files(run), unbroken) + left_beside(run);
   }
-  /// Replaces the folder of a run by a copy of that of another run.
+  /// Replaces the folder `to` by a copy of the folder `from`, which contains a run.
   void copy(const std::string& from, const std::string& to) const {
     fs::remove_all(folder_ / to);
     fs::copy(folder_ / from, folder_ / to, fs::copy_options::recursive);
@@ -142,14 +143,14 @@ class FaultyRun {
   std::string output() const { return bytes_of(folder_ / ".out"); }
   fs::path operator/(const std::string& name) const { return folder_ / name; }
 
-  /// Returns the name of a folder beside that of a run that a killed process has left; empty if there is
-  /// none.
+  /// Returns the name of an unfinished folder that a killed process has left beside the folder of a run, or
+  /// an empty text.
   std::string left_beside(const std::string& run) const {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path))
       if (entry.path().filename().string().rfind(run + ".part-", 0) == 0) return entry.path().string();
     return {};
   }
-  /// Returns the names of all files of a run, with their bytes; for run.json, its lasting_record().
+  /// Returns the names of all files of a run, with their bytes. For run.json the bytes are lasting_record().
   std::map<std::string, std::string> files(const std::string& run) const {
     std::map<std::string, std::string> all;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_ / run)) {

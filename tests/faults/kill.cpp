@@ -1,4 +1,4 @@
-// A run is killed at any of its system calls. Resumed, it gives the files of an unbroken run, byte for byte.
+// A run is killed at one of its system calls. The resumed run gives the files of an uninterrupted run.
 #include <algorithm>
 
 #include "catch.h"
@@ -22,7 +22,8 @@ std::string kill_and_resume(const FaultyRun& place, long call,
   return place.wrong_after_resume("broken", unbroken);
 }
 
-/// Returns the calls at which to kill: `early` of them spread over the first 600, `late` over the others.
+/// Returns numbers of calls at which runs are killed: `early` numbers spread over the first 600 calls, and
+/// `late` numbers spread over the later calls. all: number of calls of a run.
 std::vector<long> calls_to_kill(long all, long early, long late) {
   std::vector<long> calls;
   const long first = std::min(600L, all);
@@ -31,6 +32,8 @@ std::vector<long> calls_to_kill(long all, long early, long late) {
   return calls;
 }
 
+/// Kills runs at `early` and `late` calls (calls_to_kill()), resumes them, and compares their files with an
+/// uninterrupted run.
 void check_kills(const FaultyRun& place, long early, long late) {
   if (!tracing_works()) return;
   REQUIRE(place.run("unbroken") == 0);

@@ -1,5 +1,5 @@
-// Memory is exhausted, at any allocation and for good. The program ends with code 8 and a message, and the
-// folder of the run stays usable.
+// From some allocation on, all allocations of memory fail. The program ends with code 8 and a message, and
+// the folder of the run stays usable.
 #include <algorithm>
 
 #include "catch.h"
@@ -15,13 +15,14 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-/// Runs the program with memory that is exhausted from the n-th allocation on.
+/// Runs the program; all allocations from the one with the number `from` on fail. Returns the exit code.
 int run_without_memory(const FaultyRun& place, const std::string& run, long from) {
   return place.run(run, "",
                    "LD_PRELOAD='" PLIANT_FAIL_MEMORY "' PLIANT_COUNT_MEMORY=.count PLIANT_FAIL_MEMORY_FROM=" +
                        std::to_string(from));
 }
 
+/// Checks `points` runs in which memory is exhausted from allocations spread over the whole run.
 void check_exhaustion(const FaultyRun& place, long points) {
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");

@@ -32,7 +32,7 @@ bool kill_before_end(const FaultyRun& place) {
   return ended.code == 128 + SIGKILL;
 }
 
-/// Replaces the second half of the rows of a table by zeros, or removes it.
+/// Replaces the second half of the rows of a table by zeros, or removes these rows.
 void lose_tail(const fs::path& table, bool zeros) {
   constexpr std::size_t kHeader = 128;
   std::string bytes = bytes_of(table);

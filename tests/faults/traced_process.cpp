@@ -25,6 +25,7 @@ constexpr int kStopAtCall = SIGTRAP | 0x80;  // with PTRACE_O_TRACESYSGOOD
 /// How a kind of call names its file.
 enum class File { none, descriptor, path, path_at };
 
+/// Returns how a system call (SYS_write, ...) names its file.
 File file_of(long what) {
   switch (what) {
     case SYS_read:
@@ -77,6 +78,7 @@ std::string text_at(pid_t process, unsigned long long address) {
   return text;
 }
 
+/// Returns the path of the file of a system call, or an empty text if the call has no file.
 std::string path_of(pid_t thread, const user_regs_struct& registers, long what) {
   switch (file_of(what)) {
     case File::descriptor: {
@@ -139,7 +141,7 @@ class Tracer {
  private:
   struct Thread {
     bool in_call = false;
-    int error = 0;  // with which the call fails
+    int error = 0;  // value of errno with which the call fails; 0: the call is made
   };
 
   void stopped(pid_t thread, int signal, int event) {
@@ -165,7 +167,7 @@ class Tracer {
     if (action.kill) ::kill(process_, SIGKILL);
     if (action.error == 0) return;
     now.error = action.error;
-    registers.orig_rax = static_cast<unsigned long long>(-1);  // no call
+    registers.orig_rax = static_cast<unsigned long long>(-1);  // the kernel makes no call
     ::ptrace(PTRACE_SETREGS, thread, nullptr, &registers);
   }
 

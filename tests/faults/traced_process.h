@@ -23,6 +23,7 @@ struct Action {
   int error = 0;
 };
 
+/// How a traced process ended.
 struct Ended {
   bool traced = false;  ///< false if the system refuses ptrace; the process then did not run
   int code = -1;        ///< exit code, or 128 + the number of the signal that ended the process

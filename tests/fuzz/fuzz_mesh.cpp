@@ -1,6 +1,6 @@
 // libFuzzer target: any bytes are a mesh or are refused with std::invalid_argument or FileError. The first
-// byte chooses the format. A mesh that is accepted is finite, its triangles refer to its vertices, and
-// reading it again from a text gives it without a note.
+// byte chooses the format. A mesh that is accepted is finite, and its triangles refer to its vertices. If it
+// is also valid as an obstacle, it is written as OBJ text, and reading this text gives an equal mesh.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

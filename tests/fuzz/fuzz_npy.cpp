@@ -1,5 +1,5 @@
-// libFuzzer target: the bytes of a file are a table of doubles, all rows of which can be read, or are refused
-// with an exception of std.
+// libFuzzer target: any bytes are a table of doubles, and all rows of the table can be read, or the bytes are
+// refused with std::runtime_error.
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t columns =
         table.columns() == pliant::kNpyVector ? 1 : static_cast<std::size_t>(table.columns());
     if (columns == 0) return 0;
-    // Every whole row is in the file.
+    // The file must be large enough for all rows.
     if (static_cast<std::size_t>(table.rows()) > size / (columns * sizeof(double))) std::abort();
     std::vector<double> row(columns);
     for (std::int64_t k = 0; k < table.rows(); ++k) table.read(k, row.data());

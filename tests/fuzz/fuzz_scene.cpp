@@ -1,4 +1,4 @@
-// libFuzzer target: any text is a scene, or is refused with a SceneError that has an error, or describes
+// libFuzzer target: any text is a scene, or is refused with a SceneError that lists an error, or describes
 // joints that cannot close. Scenes of more than a kilobyte are not built, because mass points of large scenes
 // take seconds; their text is parsed and validated.
 #include <cstdint>

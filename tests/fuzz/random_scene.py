@@ -40,7 +40,7 @@ class SceneMaker:
         return float(f"{self.random.uniform(low, high):.4g}")
 
     def power(self, low, high):
-        """A number whose logarithm is uniform."""
+        """Returns a random number from low to high whose logarithm is uniformly distributed."""
         return float(f"{math.exp(self.random.uniform(math.log(low), math.log(high))):.4g}")
 
     def vector(self, size):

@@ -1,4 +1,4 @@
-"""Runs random valid scenes (random_scene.py) and examines everything that a run promises:
+"""Runs random valid scenes (random_scene.py) and checks that
 
 - the program ends with a documented exit code, and never by a signal;
 - no file of the run contains inf or nan;
@@ -7,7 +7,7 @@
 - the step, tolerance or method that a message recommends reaches the end of the scene, with code 0 unless the message
   gives the error of its energy balance.
 
-A run that takes longer than --seconds is interrupted and counts as slow.
+A run that takes longer than --seconds is interrupted and reported as slow.
 """
 
 import argparse
@@ -28,7 +28,7 @@ from random_scene import random_scene
 DONE, BAD_SCENE, UNSATISFIABLE, NUMERICAL, INACCURATE, INTERRUPTED = 0, 3, 4, 5, 6, 128 + signal.SIGINT
 REPORTED_SHARE, LARGEST_SHARE = 0.01, 0.5
 ORDERS = {"rk4": 4, "linearly_implicit": 2, "implicit_midpoint": 2, "esdirk": 4, "dormand_prince": 5, "dop853": 8}
-# A random geometry may not be valid; the program must then refuse it with one of these messages.
+# A random geometry may be invalid; the program must then refuse the scene with one of these messages.
 REFUSALS = re.compile("folds over|too coarse|inside out|neither end|no direction|tip|axis")
 REMEDY = re.compile(r"; (a step of|a tolerance of|the integrator) (\S+) ?s? reaches the end of the scene")
 INACCURATE_REMEDY = "reaches the end of the scene, but the error of its energy balance is"
@@ -54,7 +54,7 @@ def run(program, scene_file, folder, seconds, *options):
 
 
 def numbers_of(file):
-    """The float64 entries of an .npy file."""
+    """Returns the float64 entries of an .npy file."""
     data = file.read_bytes()
     start = 10 + int.from_bytes(data[8:10], "little")
     values = array.array("d")
@@ -74,7 +74,7 @@ def faults_of_files(folder):
 
 
 def balance_share(folder):
-    """The largest error of the energy balance as a share of the energy that could move, from trajectory.csv."""
+    """Returns the largest error of the energy balance divided by the energy that could move, from trajectory.csv."""
     with open(folder / "trajectory.csv", newline="") as file:
         rows = [{key.split(" ")[0]: float(value) for key, value in row.items() if value}
                 for row in csv.DictReader(file)]

@@ -114,12 +114,12 @@ TEST_CASE("of two checkpoints the newest that is undamaged and fits is found") {
   CHECK(found_time(6, 1) == -1);
   CHECK(found_time(7, 2.5e-3) == states[1].time());
   CHECK(found_time(7, 1e-4) == -1);
-  // The third checkpoint has replaced the first one, in the first file.
+  // The third checkpoint has replaced the first checkpoint, in the first file.
   flip_bit(folder / kCheckpointFiles[0], 128 + 60);
   CHECK(found_time(7, 1) == states[1].time());
   CHECK(find_checkpoint(folder.path, model, 7, 1).damage.find("checkpoint_1.npy is damaged") !=
         std::string::npos);
-  write_checkpoint(folder.path, {7, states[0], {}});  // replaces the damaged one
+  write_checkpoint(folder.path, {7, states[0], {}});  // replaces the damaged checkpoint
   CHECK(find_checkpoint(folder.path, model, 7, 1).damage.empty());
   CHECK(found_time(7, 1) == states[1].time());
   remove_checkpoints(folder.path);

@@ -41,6 +41,8 @@ std::unique_ptr<Scene> falling_scene() {
   return scene;
 }
 
+/// Runs a scene in a folder; stop_after: number of steps, or -1 for a run to the end. Returns whether the run
+/// reached its end.
 bool run(Scene& scene, const fs::path& folder, Existing existing = Existing::refuse, long stop_after = -1) {
   Progress silent;
   RunOptions options;
@@ -55,6 +57,7 @@ bool run(Scene& scene, const fs::path& folder, Existing existing = Existing::ref
   return complete;
 }
 
+/// Returns the cells of a CSV file, row by row.
 std::vector<std::vector<std::string>> table_of(const fs::path& file) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(bytes_of(file));

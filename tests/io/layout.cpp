@@ -23,13 +23,14 @@ using namespace pliant;
 
 namespace {
 
+/// Returns the number of columns of a table.
 std::size_t columns_in(const std::filesystem::path& table) {
   const NpyReader reader(table);
   return reader.columns() == kNpyVector ? 1 : static_cast<std::size_t>(reader.columns());
 }
 
-/// Returns a scene of `count` free spheres, of which every second one has a dynamic radius. Its names contain
-/// the marks of the patterns in layout.json.
+/// Returns a scene of `count` free spheres. Every second sphere has a dynamic radius. The names of the
+/// spheres contain * and #, which are placeholders in the patterns of layout.json.
 std::unique_ptr<Scene> spheres(int count) {
   auto scene = std::make_unique<Scene>();
   scene->end = 0.02;

@@ -1,4 +1,5 @@
-// The names of the columns of a table, read from layout.json as README.md of io describes it for Python.
+// The names of the columns of a table, read from layout.json as by the Python function of
+// include/pliant/io/README.md.
 #pragma once
 
 #include <string>
@@ -34,7 +35,7 @@ inline void add_names(const nlohmann::json& layout, const nlohmann::json& entrie
 
 }  // namespace layout_names_detail
 
-/// Returns the names of all columns of a table. text: that of layout.json.
+/// Returns the names of all columns of a table. text: contents of layout.json.
 inline std::vector<std::string> layout_names(const std::string& text, const char* table) {
   const nlohmann::json layout = nlohmann::json::parse(text);
   std::vector<std::string> names;

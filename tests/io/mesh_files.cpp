@@ -133,7 +133,7 @@ TEST_CASE("a PLY file has the size and the numbers of elements that its header s
   std::memcpy(n, bytes.data() + data + sizeof x, sizeof n);
   CHECK(Vec3<double>(x[0], x[1], x[2]) == meshes[0].mesh.x.col(0));
   CHECK(std::abs(std::hypot(n[0], n[1], n[2]) - 1) < 1e-6);
-  // The last index of the file is that of the last corner of the last part.
+  // The last index of the file is the index of the last corner of the last triangle of the last part.
   std::int32_t corner = 0;
   std::memcpy(&corner, bytes.data() + bytes.size() - 4, 4);
   CHECK(corner == vertices - meshes.back().mesh.x.cols() +

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Appends the rows with the numbers from `from` to `to` - 1. Their values depend on the row and the column.
 void append_rows(NpyWriter& writer, int columns, int from, int to) {
   std::vector<double> row(static_cast<std::size_t>(columns == kNpyVector ? 1 : columns));
   for (int i = from; i < to; ++i) {

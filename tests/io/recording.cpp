@@ -128,8 +128,9 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
   writer.flush();
   CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
-  // Distances from the end of the file of three bytes: in the force and in the index of part a of the last
-  // contact, and in the force of the last but one contact. All of them belong to the last state.
+  // Distances of three bytes from the end of the file. The first byte is in the force of the last contact,
+  // the second in the index of its part a, and the third in the force of the contact before it. All three
+  // bytes belong to the last state.
   for (const std::size_t from_end : {5, 75, 85}) {
     std::string bytes = whole;
     bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);

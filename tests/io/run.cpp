@@ -28,6 +28,7 @@ namespace {
 constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile,
                                     kModesFile, kWorkFile,        kTrajectoryFile};
 
+/// Returns the bytes of all tables of a run.
 std::string results_of(const fs::path& folder) {
   std::string bytes;
   for (const char* file : kResults) bytes += bytes_of(folder / file);
@@ -44,6 +45,7 @@ struct RunSettings {
   long stop_after = -1;  // number of steps; -1: the run is not stopped
 };
 
+/// Runs a scene in a folder. Returns whether the run reached its end.
 bool run(Scene& scene, const fs::path& folder, const RunSettings& settings = {}) {
   Progress silent;
   RunOptions options;
@@ -226,8 +228,8 @@ TEST_CASE("N67: a stiff shell, whose steps depend on its reused factors, also gi
 
 namespace {
 
-/// A ball that a joint presses through a floor, from the time 0.2 s on. more: text to add to the formula of
-/// the height (m) of the joint.
+/// Returns a scene in which a joint presses a ball through a floor, from the time 0.2 s on. more: text to add
+/// to the formula of the height (m) of the joint.
 std::unique_ptr<Scene> conflict_until(double end, const std::string& more = "") {
   auto scene = std::make_unique<Scene>();
   scene->name = "conflict";
@@ -660,7 +662,7 @@ TEST_CASE("run.json reports steps, evaluations, skipped computations and files")
   CHECK(record.work.parts.surfaces == 0);
   CHECK_FALSE(record.skipped.empty());
   CHECK(record.stable_step ==
-        Approx(0.5 / std::sqrt(5.01)));  // no stiffness limits it; the top rotates by 0.5 rad in this time
+        Approx(0.5 / std::sqrt(5.01)));  // in this time the top rotates by 0.5 rad; nothing is stiff
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
 }

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kFiles[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile,
                                   kModesFile, kChecksumsFile,   kTrajectoryFile};
 
-/// Holds the lock of a file, as the process that writes it does.
+/// Holds the lock of a file, like a process that writes the file.
 struct HeldLock {
   explicit HeldLock(const fs::path& file) : descriptor(::open(file.c_str(), O_RDWR)) {
     REQUIRE(::flock(descriptor, LOCK_EX | LOCK_NB) == 0);
@@ -34,7 +34,7 @@ struct HeldLock {
   int descriptor;
 };
 
-/// Texts for the user.
+/// Collects the notes for the user.
 struct Notes : Progress {
   std::string all;
   void note(const std::string& text) override { all += text + "\n"; }
@@ -54,6 +54,7 @@ std::string run(const fs::path& folder, Existing existing) {
   return notes.all;
 }
 
+/// Returns the bytes of all tables of a run.
 std::string results_of(const fs::path& folder) {
   std::string bytes;
   for (const char* file : kFiles) bytes += bytes_of(folder / file);
@@ -145,7 +146,7 @@ TEST_CASE("unfinished files are removed, but not frames that a living process wr
                  table = out / ("trajectory.csv.part-" + living + "-0"),
                  beside = folder / ("r.part-" + ended + "-0"), mine = folder / ("r.part-" + ended + "-1");
   for (const fs::path& file : {locked, stale, fresh, other, table}) set_bytes(file, "x");
-  const HeldLock writer(locked);  // as of a process on another machine
+  const HeldLock writer(locked);  // like the lock of a process on another machine
   for (const fs::path& unfinished : {beside, mine}) {
     fs::create_directory(unfinished);
     set_bytes(unfinished / kLockFile, ended);

@@ -91,8 +91,8 @@ TEST_CASE("the table contains the recorded numbers exactly, with their names") {
   CHECK(worst < 1e-3);
 }
 
-TEST_CASE("a joint's force is the one on its first side, in the world frame, and its gap is closed") {
-  // One sphere hangs at rest from a ball joint at its top, and another one swings about a ball joint. The
+TEST_CASE("a joint's force is the force on its first side, in the world frame, and its gap is closed") {
+  // One sphere hangs at rest from a ball joint at its top, and another sphere swings about a ball joint. The
   // test runs with and without rotated frames, and with the spheres on the first or on the second side.
   const double g = 9.81, r = 0.1, mass = 3;
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity(),

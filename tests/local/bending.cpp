@@ -15,8 +15,8 @@ using namespace pliant::test;
 
 namespace {
 
-constexpr Sheet kSheet{7e4, 0.3, 0.02};
-constexpr double kMass = 54;  // kg/m^2
+constexpr Sheet kSheet{7e4, 0.3, 0.02};  // E (Pa), nu, thickness (m)
+constexpr double kMass = 54;             // kg/m^2
 
 /// Returns local coordinates: those of the nodes, followed by the own coordinates of the energy (phi).
 VecX<double> with_own_coordinates(const VecX<double>& nodal, const VecX<double>& own) {
@@ -27,6 +27,7 @@ VecX<double> with_own_coordinates(const VecX<double>& nodal, const VecX<double>&
 VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
+/// Returns the masses of the nodes' coordinates, followed by the inertia of phi.
 VecX<double> all_masses(const NodalEnergy& bending, const ShellMesh& mesh) {
   return with_own_coordinates(kMass * thrice(node_areas(mesh)), bending.own_inertia());
 }
@@ -123,14 +124,14 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
       // unit vector across the edge, away from the left triangle
       const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));
       const Vec3<double> slope(xx * middle[0] + xy * middle[1], yy * middle[1] + xy * middle[0], 0);
-      const auto normal_angle =
-          [&](int t) {  // rotation of the mid-edge normal relative to the triangle's; a normal is (-slope, 1)
-            const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
-            Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
-                                 .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
-            m /= m[2];
-            return -slope.dot(across) - m.dot(across);
-          };
+      // Returns the angle from the normal of triangle t to the mid-edge normal. A normal is (-slope, 1).
+      const auto normal_angle = [&](int t) {
+        const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
+        Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
+                             .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
+        m /= m[2];
+        return -slope.dot(across) - m.dot(across);
+      };
       const double left = normal_angle(edges[e].left);
       phi[static_cast<Eigen::Index>(e)] =
           edges[e].inside() ? 0.5 * (left + normal_angle(edges[e].right)) : left;
@@ -144,8 +145,8 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Eigen::Index n = mesh.n_nodes();
     for (std::size_t e = 0; e < edges.size(); ++e)
       if (edges[e].inside()) CHECK(std::abs(f[3 * n + static_cast<Eigen::Index>(e)]) <= 1e-12 * largest);
-    // Inner nodes have no force, except nodes opposite to a boundary edge: their triangle exerts a moment on
-    // this edge, and no second triangle balances the moment.
+    // Inner nodes have no force, except nodes opposite to a boundary edge. The triangle of the edge exerts a
+    // moment on the edge, and no second triangle balances this moment.
     std::vector<bool> across(static_cast<std::size_t>(n), false);
     for (const ShellEdge& edge : edges)
       if (!edge.inside())
@@ -157,7 +158,7 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
   }
 }
 
-TEST_CASE("bending: for small displacements the folding energy is the linear one", "[local]") {
+TEST_CASE("bending: for small displacements the folding energy equals the linear energy", "[local]") {
   Draws draws(4);
   const ShellMesh mesh = icosphere(1, 0.7);
   const LinearBending linear(mesh, kSheet, kMass);
@@ -204,7 +205,7 @@ TEST_CASE("bending: a fold that passes half a turn keeps its energy, force and s
 
 TEST_CASE("bending: a triangle that swings about its edge beyond half a turn keeps its energy",
           "[local][long]") {
-  // Two triangles, elastic in their planes, with a soft hinge. The angular velocity of one of them about the
+  // Two triangles, elastic in their planes, with a soft hinge. The angular velocity of one triangle about the
   // common edge is large enough for more than half a turn against the moment of the hinge.
   Nodes X(4, 3);
   X << 0, 0, 0, 0, 1, 0, -0.8, 0.4, 0, 0.9, 0.5, 0;
@@ -314,6 +315,7 @@ namespace {
 struct Deflection {
   double middle, integral;
 };
+/// Solves for an irregular plate of n x n cells. clamped: whether the edges are clamped or simply supported.
 Deflection plate(int n, bool clamped, std::uint64_t seed) {
   Draws draws(seed);
   const ShellMesh random_sheet = irregular_sheet(n, n, 1, 1, draws);

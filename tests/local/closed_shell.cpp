@@ -18,7 +18,7 @@ using namespace pliant::test;
 
 namespace {
 
-constexpr double kRadius = 2.5, kE = 2e11, kDensity = 7800, kThickness = 0.1;
+constexpr double kRadius = 2.5, kE = 2e11, kDensity = 7800, kThickness = 0.1;  // m, Pa, kg/m^3, m
 
 /// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of the lower branch of degree n. n = 0 is breathing, that
 /// is uniform radial motion.
@@ -38,6 +38,7 @@ struct Shell {
   ShellMesh mesh;
   VecX<double> M;
 };
+/// Returns an icosahedral mesh and its masses. levels: number of refinements.
 Shell icosphere_shell(int levels) {
   const ShellMesh mesh = icosphere(levels, kRadius);
   return {mesh, kDensity * kThickness * thrice(sphere_areas(mesh))};
@@ -122,6 +123,7 @@ std::array<double, 11> bending_errors(int levels) {
   return errors;
 }
 
+/// Returns the order of convergence from two errors; ratio: ratio of their edge lengths.
 double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
@@ -212,7 +214,7 @@ TEST_CASE("closed shell: the spectrum with bending, all degrees on 2562 nodes", 
     INFO("n " << n << ": errors " << coarse[k] << ", " << fine[k]);
     CHECK(std::abs(coarse[k]) <= 0.0012 * n * n);
     CHECK(std::abs(fine[k]) <= largest[k]);
-    // On 642 nodes modes of n = 10 mix with others: there are five edges in a wave.
+    // On 642 nodes, modes of n = 10 mix with other modes, because there are only five edges in a wave.
     if (n < 10) CHECK(slope(coarse[k], fine[k]) >= (n <= 5 ? 1.95 : n <= 8 ? 1.8 : 1.75));
   }
 }

@@ -1,5 +1,5 @@
 // Checks of every energy of local deformation at coordinates x: the force is minus the gradient of the
-// energy, add_derivative() adds the derivative of the force, and add_stiffness() agrees with it.
+// energy, add_derivative() adds the derivative of the force, and add_stiffness() agrees with this derivative.
 // add_viscosity() agrees with add_viscous_force(). Results have the same bits for any number of threads. The
 // frequency bound is valid.
 #pragma once
@@ -61,6 +61,8 @@ inline void check_slopes(const NodalEnergy& energy, const VecX<double>& x, doubl
   }
 }
 
+/// Checks that the assembled stiffness and viscosity are symmetric and agree with add_derivative() and
+/// add_viscous_force().
 inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   Draws draws(8);
   const Eigen::SparseMatrix<double> K = stiffness(energy, x);

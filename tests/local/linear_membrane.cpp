@@ -15,7 +15,7 @@ using namespace pliant::test;
 
 namespace {
 
-constexpr Sheet kSheet{7e4, 0.3, 0.02};
+constexpr Sheet kSheet{7e4, 0.3, 0.02};  // E (Pa), nu, thickness (m)
 
 /// Returns the largest |component| of the forces f at the inner nodes of a sheet a x b.
 double inside(const ShellMesh& mesh, const VecX<double>& f, double a, double b) {

@@ -82,7 +82,7 @@ TEST_CASE("membranes: homogeneous stretch has the energy and the stress of the c
       const double a = low + (high - low) / 3, b = high - (high - low) / 3;
       (density(a) < density(b) ? high : low) = density(a) < density(b) ? b : a;
     }
-    // With ln J: mu (l3^2 - 1) + lambda ln J = 0.
+    // For the law with ln J, mu (l3^2 - 1) + lambda ln J = 0.
     const double lambda = nu < 0.5 ? E * nu / ((1 + nu) * (1 - 2 * nu)) : 0;
     double h = 1;
     for (int i = 0; nu < 0.5 && i < 60; ++i)

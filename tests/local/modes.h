@@ -17,10 +17,10 @@
 
 namespace pliant::test {
 
-/// Returns the mean omega^2 of the `count` modes with omega^2 < 2 `near` that have the largest components in
-/// the space of U, after inverse iterations of U and V at omega^2 = `near`. V contains fields of neighbouring
-/// modes, which would mix with the wanted modes. Throws std::out_of_range if there are fewer than `count`
-/// modes.
+/// Returns the mean omega^2 of `count` modes, after inverse iterations of U and V at omega^2 = `near`. Of the
+/// modes with omega^2 < 2 `near`, those with the largest components in the space of U are selected. V
+/// contains fields of neighbouring modes, which would mix with the wanted modes. Throws std::out_of_range if
+/// there are fewer than `count` modes.
 inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double near,
                             const MatX<double>& U, const MatX<double>& V, int count) {
   Eigen::SparseMatrix<double> A = K;
@@ -49,7 +49,7 @@ inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<dou
 }
 
 /// Returns fields of 2n + 1 random surface harmonics Y of degree n on the sphere. For each Y, one column is Y
-/// along the normal and the next one is grad Y / n. Y is Re (a.N)^n with the unit normal N and a random
+/// along the normal, and the next column is grad Y / n. Y is Re (a.N)^n with the unit normal N and a random
 /// complex vector a, a.a = 0. For n = 0, the only column is the normal.
 inline MatX<double> harmonic_fields(const ShellMesh& mesh, int n) {
   Draws draws(11);

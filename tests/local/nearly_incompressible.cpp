@@ -27,8 +27,8 @@ SolidMesh sphere(int resolution) {
   return test::solid_mesh("sphere", {}, resolution, test::order_of(Element::n_nodes));
 }
 
-/// Returns omega r / c_t of the lowest spheroidal mode of degree 2 (0S2) of a free sphere with the radius r,
-/// the first root of its equation (Lamb 1882). c_t: speed of shear waves.
+/// Returns omega r / c_t of the lowest spheroidal mode of degree 2 (0S2) of a free sphere. The result is the
+/// first root of the frequency equation (Lamb 1882). r: radius; c_t: speed of shear waves.
 double lamb_S2(double nu) {
   const double slow = std::sqrt((1 - 2 * nu) / (2 * (1 - nu)));
   auto j = [](unsigned l, double x) { return std::sph_bessel(l, x); };
@@ -59,12 +59,14 @@ double S2_error(const NodalEnergy& energy, const SolidMesh& mesh, double nu) {
   const double exact = lamb_S2(nu);
   return std::max(eta[9] / exact - 1, 1 - eta[5] / exact);
 }
+/// Returns S2_error() of plain elements.
 template <class Element>
 double plain_error(int resolution, double nu) {
   const SolidMesh mesh = sphere<Element>(resolution);
   return S2_error<Element>(
       LinearSolid<Element>(mesh.rest, mesh.elements, LinearLaw(Elasticity(2 * (1 + nu), nu))), mesh, nu);
 }
+/// Returns S2_error() of elements with averaged dilatation.
 template <class Element>
 double averaged_error(int resolution, double nu) {
   const SolidMesh mesh = sphere<Element>(resolution);

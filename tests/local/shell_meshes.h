@@ -24,8 +24,7 @@ inline ShellMesh shell_mesh(const std::vector<Vec3<double>>& X,
   return ShellMesh(nodes, corners);
 }
 
-/// Returns a sphere about the origin: an icosahedron, each of whose triangles is split into four, `levels`
-/// times.
+/// Returns a sphere about the origin. The triangles of an icosahedron are split into four, `levels` times.
 inline ShellMesh icosphere(int levels, double radius) {
   const double g = 0.5 * (1 + std::sqrt(5.0));
   std::vector<Vec3<double>> X{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},

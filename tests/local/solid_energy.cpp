@@ -26,7 +26,7 @@ using test::SolidMesh;
 
 namespace {
 
-const Elasticity kRubber(3.0, 0.3);
+const Elasticity kRubber(3.0, 0.3);  // E (Pa), nu
 
 SolidMesh ball(int n_nodes) {
   return test::solid_mesh("sphere", {}, n_nodes == 4 ? 2 : 1, test::order_of(n_nodes));
@@ -39,10 +39,10 @@ struct Kind {
   static constexpr int N = Element::n_nodes;
   static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
   static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
-  /// Largest random displacement. It causes strains of some tenths and may invert elements. It is smaller for
-  /// elements of 15 nodes with laws that refuse inverted elements.
   static constexpr bool kRefusesInversion =
       std::is_same_v<Law, Corotated> || std::is_same_v<Law, NeoHookeanLog>;
+  /// Largest random displacement. It causes strains of some tenths and may invert elements. It is smaller for
+  /// elements of 15 nodes with laws that refuse inverted elements.
   static constexpr double kSize = N == 15 && kRefusesInversion ? 0.01 : 0.05;
   static VecX<double> state(const SolidMesh& mesh, double size = kSize) {
     Draws draws(3);
@@ -93,6 +93,7 @@ Mat3<double> uniform_strain() {
   A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
   return A;
 }
+/// Returns the largest eigenvalue omega^2 of K u = omega^2 M u, 1/s^2. M: diagonal of the mass matrix, kg.
 double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();
   const MatX<double> A = root.asDiagonal() * K * root.asDiagonal();
@@ -289,14 +290,14 @@ TEST_CASE("rubber in uniaxial tension: closed forms of both neo-Hookean laws", "
   const double lambda = kRubber.lambda(), mu = kRubber.mu();
   const auto stretched = [](double a, double s) { return Mat3<double>(Vec3<double>(a, a, s).asDiagonal()); };
   for (const double s : {0.3, 0.8, 1.0, 1.5, 4.0}) {
-    // With ln J: mu (a^2 - 1) + lambda ln J = 0 and P_33 = mu (s - a^2/s), J = a^2 s.
+    // Law with ln J: mu (a^2 - 1) + lambda ln J = 0 and P_33 = mu (s - a^2/s), J = a^2 s.
     double a = 1;
     for (int i = 0; i < 60; ++i)
       a -= (mu * (a * a - 1) + lambda * std::log(a * a * s)) / (2 * mu * a + 2 * lambda / a);
     const Mat3<double> P = NeoHookeanLog(kRubber).stress(stretched(a, s));
     CHECK(std::abs(P(0, 0)) <= 1e-14 * mu * (1 + s));
     CHECK(P(2, 2) == Approx(mu * (s - a * a / s)).epsilon(1e-13).margin(1e-14));
-    // Without logarithm: mu a + q a s = 0 with q = (lambda + mu)(J - 1) - mu, so q = -mu/s, J - 1 = (mu -
+    // Law without logarithm: mu a + q a s = 0 with q = (lambda + mu)(J - 1) - mu, so q = -mu/s, J - 1 = (mu -
     // mu/s)/ (lambda + mu) and P_33 = mu s + q a^2.
     const double J = 1 + (mu - mu / s) / (lambda + mu);
     if (J <= 0) continue;

@@ -22,12 +22,15 @@ inline Solid::Order order_of(int n_nodes) {
                          : Solid::Order::enriched;
 }
 
+/// A mesh of tetrahedra: rest positions of the nodes (m), node numbers of the elements and of the boundary
+/// triangles (columns).
 struct SolidMesh {
   Nodes rest;
   Eigen::MatrixXi elements, boundary;
   int n() const { return static_cast<int>(rest.rows()); }
 };
 
+/// Returns the mesh of a part at rest. values: rest values; chain: names of the deformations.
 inline SolidMesh solid_mesh(const std::string& shape, const Part::Named& values, int resolution,
                             Solid::Order order, const std::vector<std::string>& chain = {}) {
   const std::unique_ptr<Part> part = make_part("part", shape, chain, 1);

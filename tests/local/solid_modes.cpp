@@ -46,9 +46,10 @@ VecX<double> field(const SolidMesh& mesh, F&& f) {
 }
 
 /// Relative errors of omega r / c_t of the unit sphere with nu_P = 0.3, with the speed c_t of shear waves.
-/// The modes are the torsional ones of degree 2 (T2, five modes), the spheroidal ones of degrees 2 and 1 (S2,
-/// five; S1, three), and breathing. Modes S2 (of second radial order, 0.2 % away) and S4 (1 % away) mix with
-/// breathing on a mesh. Therefore the error of breathing is that of its exact field, smoothed on the mesh.
+/// The modes are the torsional modes of degree 2 (T2, five modes), the spheroidal modes of degrees 2 and 1
+/// (S2, five; S1, three), and breathing. Modes S2 (of second radial order, 0.2 % away) and S4 (1 % away) mix
+/// with breathing on a mesh. Therefore the error of breathing is that of its exact field, smoothed on the
+/// mesh.
 struct LambErrors {
   double T2, S2, S1, breathing;
 };
@@ -66,6 +67,7 @@ LambErrors lamb(int resolution, Mass mass) {
   return {eta.segment(0, 5).mean() / 2.50113 - 1, eta.segment(5, 5).mean() / 2.64622 - 1,
           eta.segment(10, 3).mean() / 3.52999 - 1, std::sqrt(found) / breathing - 1};
 }
+/// Returns the order of convergence from two errors; ratio: ratio of their edge lengths.
 double order(double coarse, double fine, double ratio) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
@@ -231,9 +233,9 @@ double mode_frequency(const Modes& modes, const test::Sparse& M, const MatX<doub
 constexpr std::array<double, 3> kFreeRoots{4.730041, 7.853205, 10.995608},
     kClampedRoots{1.875104, 4.694091, 7.854757};
 
-/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / (rho A)) / L^2, from Timoshenko's
-/// beam for L / r = 10 and 20, and from the solid for L / r = 10 (polynomials of degree 10,
-/// tests/part/bases.cpp).
+/// Bending frequencies of a free bar with nu = 0.3, in units of sqrt(E I / (rho A)) / L^2. kBeam10 and
+/// kBeam20: Timoshenko's beam for L / r = 10 and 20. kSolid10: the solid for L / r = 10 (polynomials of
+/// degree 10, tests/part/bases.cpp).
 constexpr std::array<double, 3> kBeam10{20.3813, 49.2314, 83.9790}, kBeam20{21.8046, 57.5396, 106.6438},
     kSolid10{20.41175, 49.4462, 84.565};
 
@@ -357,7 +359,8 @@ TEST_CASE("a cantilever cylinder: bending, torsion and stretching frequencies", 
     CHECK(order(coarse.torsion[k], fine.torsion[k], 1.5) > (k == 0 ? 3.9 : 3.3));
     CHECK(order(coarse.stretch[k], fine.stretch[k], 1.5) > (k == 0 ? 3.9 : 3.7));
   }
-  // The clamp prevents lateral contraction of its face, which Timoshenko's beam neglects: about 1 % stiffer.
+  // The clamp prevents lateral contraction of the clamped face. Timoshenko's beam neglects this; the solid is
+  // about 1 % stiffer.
   const ClampedErrors contracting = clamped_bar(3, 0.3);
   CHECK(contracting.bending[0] == Approx(0).margin(0.0235));
   CHECK(contracting.bending[1] == Approx(0).margin(0.0255));

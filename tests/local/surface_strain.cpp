@@ -15,6 +15,7 @@ using namespace pliant;
 
 namespace {
 
+/// A surface mesh at rest: positions (m, columns) and triangles.
 struct Skin {
   Eigen::Matrix3Xd X;
   Eigen::Matrix3Xi triangles;

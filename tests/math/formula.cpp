@@ -23,6 +23,7 @@ double value(const std::string& text, double t = 0) {
   return Formula(text).at(t).v;
 }
 
+/// A formula, the function that it means, and the times at which both are compared.
 struct Case {
   const char* text;
   std::function<Real(Real)> function;
@@ -73,6 +74,7 @@ void differences(const std::function<Real(Real)>& f, Real t, Real* first, Real* 
   *second = (-a + 16 * b - 30 * c + 16 * d - e) / (12 * h * h);
 }
 
+/// Returns the position of the error in an invalid formula, or npos.
 std::size_t fault_offset(const std::string& text) {
   try {
     Formula formula(text);
@@ -82,6 +84,7 @@ std::size_t fault_offset(const std::string& text) {
   return std::string::npos;
 }
 
+/// Returns the message about an invalid formula, or "no fault".
 std::string fault(const std::string& text) {
   try {
     Formula formula(text);

@@ -55,6 +55,7 @@ SparseMatrix spring_net(int n, unsigned seed) {
   return A;
 }
 
+/// Returns the lower triangle of a matrix.
 SparseMatrix lower(const Eigen::MatrixXd& dense) {
   Triplets entries;
   for (int j = 0; j < dense.cols(); ++j)

@@ -27,6 +27,7 @@ std::vector<double> random_times(int n, std::mt19937* generator) {
   return t;
 }
 
+/// Returns the message about key frames with times t and values y, or "no fault".
 std::string fault(const std::vector<double>& t, const std::vector<double>& y) {
   try {
     TimeFunction::key_frames(t, y);
@@ -65,7 +66,7 @@ TEST_CASE("linear key frames are straight lines with a kink at every key") {
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     const double rate = (y[i + 1] - y[i]) / (t[i + 1] - t[i]);
     CHECK(lines.at(t[i]).v == y[i]);
-    CHECK(lines.at(t[i]).d == rate);  // at a key the rate is that after the key
+    CHECK(lines.at(t[i]).d == rate);  // at a key the rate is the rate after the key
     const auto middle = lines.at(0.5 * (t[i] + t[i + 1]));
     CHECK(middle.v == Approx(0.5 * (y[i] + y[i + 1])));
     CHECK(middle.d == rate);

@@ -1,6 +1,6 @@
 // Steps with error control: the error follows the tolerance, steps end exactly at requested times, a resumed
-// run gives identical bits, impacts are located, and failures are reported. Also the automatic choice of the
-// method.
+// run gives identical bits, impacts are located, and failures are reported. The automatic choice of the
+// method is also tested.
 #include "catch.h"
 
 #include <ctime>
@@ -27,6 +27,8 @@ void pendulum(MultiBody& body) {
   body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
 }
 
+/// Returns the state at the time `end` (s) of a run with a tolerance. counters: receives the counters of the
+/// run.
 State end_of(const std::function<void(MultiBody&)>& build, const std::string& method, double tolerance,
              double end, StepCounters* counters = nullptr) {
   MultiBody body;

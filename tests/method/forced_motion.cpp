@@ -32,6 +32,7 @@ Result end_of(const char* method, int steps, const Build& build) {
   test::run(simulation, 0.25, steps);
   return {simulation.state(), simulation.ledger()};
 }
+/// Returns the difference of two states: of coordinates, velocities and works.
 double distance(const State& a, const State& b) {
   return (a.q - b.q).norm() + (a.v - b.v).norm() + (a.work - b.work).norm();
 }

@@ -194,7 +194,7 @@ TEST_CASE("pseudo-rigid ellipsoid against the integration of its own Lagrangian"
   Vec9 y;
   y << 0.6, rest[1], rest[2], 0, 0.5, 0, 0, 0, 0;
   y.tail<3>() = inertia(y).cwiseProduct(Vec3<double>(2, 3, 1));
-  // The mass is given, so the initial semi-axes do not change it.
+  // The mass is given, so the initial semi-axes do not change the mass.
   const double T = 3;
   const int steps = 6000;
   for (int i = 0; i < steps; ++i) {

@@ -36,6 +36,7 @@ void tumbling(MultiBody& body, double E, double beta, bool parameters, bool ring
   part.deform_locally(settings);
 }
 
+/// Returns q and v after 0.4 s of tumbling().
 VecX<double> end_of(const std::string& method, int steps, double beta, bool parameters) {
   MultiBody body;
   tumbling(body, 2e3, beta, parameters);

@@ -38,7 +38,7 @@ struct Law {
 struct Soft {
   std::vector<Law> laws;
   bool shell = false;
-  bool parameters = false;         ///< whether its axes are dynamic
+  bool parameters = false;         ///< whether its semi-axes are dynamic
   double alpha = 0, beta = 0;      ///< damping coefficients of the nodes and of the dynamic axes
   double displacement_factor = 0;  ///< factors of the sample displacement and velocity at time 0
   double velocity_factor = 0.5;
@@ -58,6 +58,7 @@ Soft shell(const std::string& membrane, const std::string& bending, double E) {
   return soft;
 }
 
+/// Adds a soft ellipsoid with these settings.
 Part& add(MultiBody& body, const std::string& name, const Soft& soft) {
   auto& part = body.add<Primitive<Ellipsoid>>(name, soft.shell ? 2.0 : 10.0);
   if (soft.shell) part.make_shell();
@@ -134,6 +135,7 @@ Errors errors(const Build& build, double time, const std::vector<int>& steps) {
   }
   return errors;
 }
+/// Checks that positions and velocities at `time` (s) converge with order 2. steps: numbers of steps.
 void check_order(const Build& build, double time, const std::vector<int>& steps) {
   const Errors error = errors(build, time, steps);
   CAPTURE(error.q, error.v);
@@ -339,7 +341,7 @@ TEST_CASE("steps of 100 times the explicit limit are stable for a thousand steps
 }
 
 TEST_CASE(
-    "damping by beta of a stretched rubber block only takes energy, in steps far above the explicit limit",
+    "damping by beta of a stretched rubber block only removes energy, in steps far above the explicit limit",
     "[implicit][stable][long]") {
   // The block hangs at its top, and its weight stretches it by a tenth. In this state the matrix V of the
   // viscous forces (method/implicit/README.md) is not K, and forces on displaced nodes also turn the frame of
@@ -457,7 +459,8 @@ TEST_CASE("a stiff part on joints approaches the rigid motion as its stiffness g
 }
 
 TEST_CASE(
-    "the stiffness is factored once, again after a change of the step length, and in each step if it changes",
+    "the stiffness is factored once, again after a change of the step, and in each step if the stiffness "
+    "changes",
     "[implicit][long]") {
   MultiBody body;
   flying(solid("elastic", 1000))(body);
@@ -537,7 +540,7 @@ TEST_CASE("the state is complete: another simulation, resumed from it, gives ide
 }
 
 TEST_CASE(
-    "Eigen's and CHOLMOD's factors give one motion, with the block solver and with the augmented matrix",
+    "Eigen's and CHOLMOD's factors give equal motion, with the block solver and with the augmented matrix",
     "[implicit][joints]") {
   std::vector<VecX<double>> ends;
   for (const bool cholmod : {false, true})

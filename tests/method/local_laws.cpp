@@ -14,7 +14,7 @@ using namespace pliant;
 
 namespace {
 
-/// Returns numbers of a law, in its order, with which a part is soft.
+/// Returns the numbers of a law (moduli, thickness, ...) for a soft part, in the order of the law.
 std::vector<double> numbers(const LocalLawInfo& law) {
   static const std::vector<std::pair<std::string, double>> known{
       {"E", 300}, {"nu", 0.3}, {"thickness", 0.1}, {"w0", 10},  {"w1", 5},
@@ -211,7 +211,8 @@ TEST_CASE("N20: the largest stable step includes the beta damping of every law",
       MultiBody body;
       tumbling(body, law, 0.05);
       Simulation simulation(body, method);
-      // The limit is that of small motions about the start, and the motion changes the shape.
+      // The predicted limit is that of small motions about the initial state. The motion changes the shape,
+      // so the step is shorter.
       const double h = 0.9 * largest_stable_step(simulation), start = simulation.ledger().energy();
       CAPTURE(law.name, method, h);
       CHECK_NOTHROW([&] {

@@ -21,7 +21,7 @@ using test::sample_velocity;
 
 namespace {
 
-/// The material of a soft part. order: of the elements of a solid; 0 for a shell.
+/// The material of a soft part. order: order of the elements of a solid; 0 for a shell.
 struct Kind {
   const char* name;
   int order;
@@ -42,9 +42,9 @@ std::vector<Kind> kinds() {
           {"a curved solid of rubber", 2, {local_law("neo_hookean", solid)}}};
 }
 
-/// Adds a tumbling part and returns it. soft: whether its global parameters are dynamic. order: of the
-/// elements of a solid; 0 for a shell. If `laws` is empty, a shell has a net of springs and a solid has the
-/// law "elastic".
+/// Adds a tumbling part and returns it. soft: whether its global parameters are dynamic. order: order of
+/// the elements of a solid; 0 for a shell. If `laws` is empty, a shell has a net of springs, and a solid has
+/// the law "elastic".
 Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
                const std::vector<LocalLaw>& laws = {}) {
   body.gravity.setZero();
@@ -68,8 +68,8 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
 }
 
 /// Applies a force at each of the given material points in turn. moving: whether the part moves; otherwise
-/// its velocities are zero. Checks that the sum of m x_ddot over the nodes is the force, and that the sum of
-/// p x (m x_ddot) is the torque of the force about the origin of the frame.
+/// its velocities are zero. Checks that the sum of m x_ddot over the nodes is the force. Checks that the sum
+/// of p x (m x_ddot) is the torque of the force about the origin of the frame.
 void check_forces(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
   const Vec3<double> force(1, -2, 0.5);
   std::size_t active = 0;
@@ -116,6 +116,7 @@ void check_forces(MultiBody& body, Part& part, const std::vector<Material<double
 struct Violation {
   double position = 0, velocity = 0;
 };
+/// Returns the largest violations of all parts at the state of a simulation.
 Violation violation(const Simulation& simulation, Workspace<double>& work) {
   const State& state = simulation.state();
   Violation worst;
@@ -197,7 +198,7 @@ TEST_CASE(
 
 namespace {
 
-/// Adds a part in free flight, hanging from a point of its surface, or falling onto a plane.
+/// Motion of a part: in free flight, hanging from a point of its surface, or falling onto a plane.
 enum class Motion { flying, hanging, falling };
 void add_part(MultiBody& body, const Kind& kind, bool soft, Motion motion) {
   Part& part = tumbling(body, 1, soft, kind.order, kind.laws);
@@ -228,7 +229,7 @@ TEST_CASE("W^T d = 0 to rounding during a run: laws of every kind, free, on a jo
       for (const Kind& kind : kinds())
         for (const bool soft : {false, true}) {
           CAPTURE(method, static_cast<int>(motion), kind.name, soft);
-          // too slow for a test
+          // these runs take too long for a test
           if (kind.order == 2 && soft && method == std::string("linearly_implicit")) continue;
           MultiBody body;
           add_part(body, kind, soft, motion);
@@ -360,6 +361,7 @@ TEST_CASE("dust: every node of a spinning shell without elasticity moves on a st
 
 namespace {
 
+/// Extreme values of a run of twist().
 struct Twisted {
   double lowest = 3, highest = -3;  ///< smallest and largest twist, rad (the initial values are replaced)
   double condition = 0;             ///< largest condition number of the matrix K of the reference conditions

@@ -1,5 +1,5 @@
-// The factor of the local stiffness: a constant factor acts as laws with multiplied constants, and the
-// balance has the work of a changing factor.
+// The factor of the local stiffness. A constant factor is equivalent to multiplied constants of the laws. The
+// energy balance contains the work of a changing factor.
 #include "catch.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 using Basis = LocalSettings::Basis;
 
-/// Returns numbers of a law, in its order, with which a part is soft. scale: multiplies the numbers in which
-/// the energy is linear.
+/// Returns the numbers of a law (moduli, thickness, ...) for a soft part, in the order of the law. scale:
+/// multiplies the numbers in which the energy is linear.
 std::vector<double> numbers(const LocalLawInfo& law, double scale) {
   static const std::vector<std::pair<std::string, double>> moduli{{"E", 300}, {"w0", 10}, {"w1", 5},
                                                                   {"p", 3},   {"p0", 10}, {"p_ext", 8}},
@@ -64,12 +64,14 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, Basis basis, double sca
   return part;
 }
 
-/// Whether the law alone gives a shell modes: it is quadratic in d, and resists in-plane motion.
+/// Returns whether a shell with this law alone has modes. Its energy must be quadratic in d and resist
+/// in-plane motion.
 bool has_shell_modes(const LocalLawInfo& law) {
   return law.quadratic && law.shell && std::string(law.name) != "bending";
 }
 
-/// Compares a part whose laws have a factor with one whose laws have multiplied constants, after 40 steps.
+/// Compares a part whose laws have a factor with a part whose laws have multiplied constants, after 40 steps
+/// of length `step` (s). accuracy: largest difference of a coordinate.
 void check_factor(const LocalLawInfo& law, Basis basis, const std::string& method, double step,
                   double accuracy) {
   CAPTURE(law.name, method);
@@ -116,12 +118,12 @@ TEST_CASE("a factor of the stiffness of modes and polynomials acts as laws with 
     const Basis basis = polynomial ? Basis::polynomial : Basis::modes;
     for (const char* method : {"implicit_midpoint", "esdirk", "linearly_implicit"})
       check_factor(law, basis, method, 2e-3, 1e-9);
-    // Explicit methods are exact for the oscillators without a factor.
+    // Explicit methods integrate the oscillators exactly only without a factor, so the step is shorter.
     check_factor(law, basis, "dop853", 5e-4, 1e-9);
   }
 }
 
-TEST_CASE("the balance has the work of a factor of the local stiffness that changes",
+TEST_CASE("the balance contains the work of a factor of the local stiffness that changes",
           "[local][motion][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const Basis basis : {Basis::nodes, Basis::modes}) {
@@ -147,9 +149,9 @@ TEST_CASE("the balance has the work of a factor of the local stiffness that chan
     }
 }
 
-TEST_CASE("contact and joints have the energy of the present factor of the local stiffness",
+TEST_CASE("in contact and on joints, the energy is that of the present factor of the local stiffness",
           "[local][contact][long]") {
-  // A jelly falls on a floor, and hangs on a joint, while its stiffness changes between 0.7 and 2.3 times.
+  // A jelly falls on a floor, and hangs on a joint, while its stiffness has a factor between 0.7 and 2.3.
   for (const bool hangs : {false, true})
     for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit"}) {
       std::vector<double> balance;

@@ -18,14 +18,15 @@ using namespace pliant;
 
 namespace {
 
+/// A test problem. end: duration of its run, s.
 struct Problem {
   const char* name;
   std::function<void(MultiBody&)> build;
   double end;
-  int steps;  ///< unit of the number of steps, of which each order uses a multiple or a fraction
+  int steps;  ///< number of steps; each method uses a multiple or a fraction, by its order
 };
 
-/// Adds two stretching links; the second one hangs from the first one.
+/// Adds two stretching links; the second link hangs from the first link.
 void soft_pendulum(MultiBody& body) {
   Part* before = nullptr;
   for (int i = 0; i < 2; ++i) {
@@ -108,6 +109,7 @@ const std::vector<Problem> kProblems{
 struct Samples {
   VecX<double> q, v, lambda;
 };
+/// Simulates a problem with fixed steps, or with a tolerance if it is positive.
 Samples sample_run(const Problem& problem, const std::string& method, int steps, double tolerance = 0) {
   MultiBody body;
   problem.build(body);
@@ -175,8 +177,8 @@ TEST_CASE("methods of different kinds agree at the end of a run", "[methods]") {
 
 namespace {
 
-/// Returns the largest relative change of the energy or of the angular momentum of a free box that tumbles in
-/// steps of 0.01 s by the implicit midpoint rule.
+/// Returns the largest relative change of the energy or of the angular momentum of a tumbling free box. The
+/// box is integrated by the implicit midpoint rule in steps of 0.01 s.
 double drift(long steps) {
   MultiBody body;
   body.gravity.setZero();
@@ -259,7 +261,7 @@ TEST_CASE("N18: a box that spins about its middle axis flips at the times of Jac
   CHECK(measure("implicit_midpoint", 1e-2, 200).second < 1e-12);
 }
 
-TEST_CASE("N21: implicit methods are stable for any stiffness: no growth, and the L-stable one damps",
+TEST_CASE("N21: implicit methods are stable for any stiffness: no growth, and the L-stable method damps",
           "[methods]") {
   for (const double stiffness : {1e4, 1e8, 1e12}) {
     for (const char* method : {"implicit_midpoint", "esdirk"}) {

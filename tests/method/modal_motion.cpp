@@ -273,6 +273,7 @@ void add_part(MultiBody& body, Basis basis, bool hanging) {
     body.gravity.setZero();
 }
 
+/// Returns the state of add_part() after 0.2 s.
 State end_of(Basis basis, bool hanging, const std::string& method, int steps) {
   MultiBody body;
   add_part(body, basis, hanging);

@@ -10,8 +10,8 @@ import re
 import sys
 from pathlib import Path
 
-ROOMS = "math shape deform local part solve body collision project method contact simulate scene io render view".split()
-ENGINE = ROOMS[:12]
+FOLDERS = "math shape deform local part solve body collision project method contact simulate scene io render view".split()
+ENGINE = FOLDERS[:12]
 MAX_CONCEPTS, MAX_LINES, MAX_PARAMETERS = 20, 60, 6
 NO_FUNCTION = re.compile(r"^\s*(if|for|while|switch|else|do|try|catch|namespace|class|struct|enum|union|extern|return)\b")
 
@@ -75,9 +75,9 @@ def main():
     project = Path(folders[0]) if folders else Path(__file__).resolve().parents[2]
     crowded, totals, long, wide = [], {}, [], []
     print("folder, concepts, lines in headers, lines in src")
-    for room in ROOMS:
+    for top in FOLDERS:
         for folder in sorted({p.parent.relative_to(project / base) for base in ("include/pliant", "src")
-                              for p in (project / base / room).rglob("*") if p.suffix in (".h", ".cpp")}):
+                              for p in (project / base / top).rglob("*") if p.suffix in (".h", ".cpp")}):
             files = {base: sources(project / base / folder) for base in ("include/pliant", "src")}
             lines = {base: sum(len(p.read_text(encoding="utf8").split("\n")) - 1 for p in paths) for base, paths in files.items()}
             concepts = {re.sub(r"(-inl)?$", "", p.stem) for paths in files.values() for p in paths}
@@ -85,7 +85,7 @@ def main():
             if len(concepts) > MAX_CONCEPTS:
                 crowded.append(f"{folder} has {len(concepts)} concepts; expected at most {MAX_CONCEPTS}")
             for base, count in lines.items():
-                key = ("engine" if room in ENGINE else "scene, io, render and view", base)
+                key = ("engine" if top in ENGINE else "scene, io, render and view", base)
                 totals[key] = totals.get(key, 0) + count
             for path in files["include/pliant"] + files["src"]:
                 for name, line, length, count in functions(path):

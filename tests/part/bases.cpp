@@ -166,8 +166,8 @@ TEST_CASE("a long cylinder by polynomials: frequencies of torsion and bending ag
   const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt();
   auto nearest = [&](double to) { return (omega.array() / to - 1).abs().minCoeff(); };
   // The shear modulus and the density are 1, so that the speed of torsional waves is c = 1. The frequencies
-  // n pi c / L of torsion, with the length L = 10, are exact. Those of bending are from Timoshenko's beam
-  // with the radius L / 10.
+  // n pi c / L of torsion, with the length L = 10, are exact. The frequencies of bending are from
+  // Timoshenko's beam with the radius L / 10.
   CHECK(nearest(kPi / 10) <= 1e-6);
   CHECK(nearest(2 * kPi / 10) <= 1e-4);
   const double unit = std::sqrt(2.6 / 4) / 100;  // sqrt(E I / (rho A)) / L^2 of the beam

@@ -17,7 +17,7 @@ using test::Draws;
 
 namespace {
 
-constexpr double kYoung = 900, kPoisson = 0.3;
+constexpr double kYoung = 900, kPoisson = 0.3;  // E, Pa; nu
 const Elasticity kMaterial(kYoung, kPoisson);
 const std::vector<std::string> kSolidLaws{"elastic", "st_venant_kirchhoff", "neo_hookean", "neo_hookean_log"};
 

@@ -14,7 +14,8 @@ namespace pliant::test {
 
 /// Returns a state within the declared ranges of the dynamic parameters. Lengths are between half and twice
 /// their rest values; other parameters are at most 5 in absolute value. corner: 0 for the largest values, 1
-/// for the smallest ones, 2 and 3 for largest and smallest values in turn, else random values.
+/// for the smallest values, 2 and 3 for largest and smallest values in turn; for other numbers the values are
+/// random.
 inline RandomState random_in_range(Draws& draws, const Part& part, int corner) {
   const Parameters& all = part.parameters();
   const int n = all.n_dynamic();

@@ -1,6 +1,6 @@
 // Kinematics of parts, s of Eq. (3) and J of Eq. (9): every shape with several chains of deformations,
-// against an independent evaluation in long double. Also surface functions, names of parameters, messages and
-// folds.
+// against an independent evaluation in long double. Surface functions, names of parameters, messages and
+// folds are tested, too.
 #include "catch.h"
 
 #include <algorithm>
@@ -309,7 +309,7 @@ TEST_CASE("errors of a part name the part, the parameter, the value and the allo
   CHECK_THROWS_WITH(part->stiffness({"a1", "a2"}, skew), has_text("symmetric"));
 }
 
-TEST_CASE("N11: a rest shape that folds over is refused, a slim one may bend by half a turn", "[part]") {
+TEST_CASE("N11: a rest shape that folds over is refused, a slim shape may bend by half a turn", "[part]") {
   const std::unique_ptr<Part> fat = make_part("fat", "cylinder", {"bend"}, 1000);
   fat->rest({{"bend.angle", 1.5}});
   CHECK_THROWS_WITH(fat->prepare(), test::has_text("part 'fat': its rest shape folds over"));

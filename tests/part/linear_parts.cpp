@@ -17,7 +17,7 @@ using test::Draws;
 
 namespace {
 
-/// Returns an unprepared part in which all lengths of the shape, or only the last one, are dynamic.
+/// Returns an unprepared part in which all lengths of the shape, or only the last length, are dynamic.
 std::unique_ptr<Part> make_with_dynamic_lengths(const std::string& shape, bool all,
                                                 const std::vector<std::string>& links = {}) {
   auto part = make_part("part", shape, links, 700);

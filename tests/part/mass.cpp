@@ -18,6 +18,7 @@ using test::Draws;
 
 namespace {
 
+/// Mass and second moments of a part at rest, from its inertia.
 struct Measured {
   double mass;
   Vec3<double> centre, squares;  ///< centre of mass; means of x^2, y^2 and z^2
@@ -356,8 +357,8 @@ TEST_CASE(
     std::vector<std::string> chain, dynamic;
     double largest_error = 1e-12;
   };
-  // At corners of the ranges, the bent and twisted cylinder has errors of 1e-12 to 4e-12: thinning leaves
-  // them (Thinning in rule_search.h).
+  // At corners of its ranges, the bent and twisted cylinder has errors of 1e-12 to 4e-12, which remain after
+  // the thinning of the rule (Thinning in rule_search.h).
   const Case cases[] = {
       {"superellipsoid", {}, {"eps2"}},
       {"superellipsoid", {}, {"eps1", "eps2"}},

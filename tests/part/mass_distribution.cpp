@@ -48,7 +48,7 @@ std::string refusal(Part& part) {
 TEST_CASE("a density that grows along z: mass, centre and inertia of ellipsoid and box", "[mass]") {
   const double a = 0.3, b = 0.2, c = 0.5, slope = 1.7;
   const auto along_z = each([&](const auto&, const Vec3<double>& X) { return 1 + slope * X[2]; });
-  // shares: volume / (a b c), and the mean of x^2 / a^2.
+  // volume: volume / (a b c); square: mean of x^2 / a^2.
   for (const auto& [shape, volume, square] :
        {std::tuple("ellipsoid", 4 * kPi / 3, 0.2), std::tuple("box", 8.0, 1.0 / 3)}) {
     const auto part = part_of(shape, {{"a1", a}, {"a2", b}, {"a3", c}}, along_z);
@@ -132,7 +132,7 @@ TEST_CASE("nodes of a soft part have the mass distribution", "[mass]") {
   const LocalMesh& mesh = part->local()->mesh();
   CHECK(mesh.mass.sum() == Approx(part->total_mass()).epsilon(1e-12));
   CHECK((mesh.X.transpose() * mesh.mass - part->rest_inertia().moment).norm() <= 1e-12 * part->total_mass());
-  // A node above is heavier than its mirror image below, by about the ratio of the densities.
+  // A node with z > 0 is heavier than its mirror image with z < 0, by about the ratio of the densities.
   double above = 0, below = 0;
   for (Eigen::Index k = 0; k < mesh.mass.size(); ++k)
     (mesh.X(k, 2) > 0 ? above : below) += std::abs(mesh.X(k, 2)) > 0.2 ? mesh.mass[k] : 0;

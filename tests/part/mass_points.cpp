@@ -15,6 +15,7 @@ using namespace pliant;
 
 namespace {
 
+/// A part, and the largest number of mass points that it may have.
 struct Case {
   const char* shape;
   Part::Named rest;
@@ -33,6 +34,7 @@ std::unique_ptr<Part> prepared(const Case& c) {
   return part;
 }
 
+/// Checks the number of mass points of a part, and that their error (doubling_error()) is at most most_error.
 void check_case(const Case& c, double most_error) {
   const std::unique_ptr<Part> part = prepared(c);
   CAPTURE(c.shape, c.dynamic.size(), c.shell, part->mass_points().n_points);
@@ -72,12 +74,12 @@ TEST_CASE("N16: dynamic exponents of the radial map: few mass points, errors bel
 
 namespace {
 
-/// Integrals over the radial superellipsoid with unit axes and density 1 by the trapezoidal rule, which
+/// Integrals over the radial superellipsoid with unit axes and density 1 by the trapezoidal rule. This rule
 /// converges exponentially for analytic integrands that decay at both ends. With s = w n R(n; eps), where R
 /// is 1 / gauge, the integral of f(n) w^2 over the volume is the integral of f R(n; eps at rest)^3 / 5 over
 /// the directions n. One octant is integrated, with n along (1, e^t, e^s).
 struct RadialIntegrals {
-  double xx = 0, zz = 0, by_1_1 = 0, by_1_2 = 0, by_2_2 = 0;  ///< by_k_l: of dR/d eps_k dR/d eps_l
+  double xx = 0, zz = 0, by_1_1 = 0, by_1_2 = 0, by_2_2 = 0;  ///< by_k_l: integral of dR/d eps_k dR/d eps_l
 
   RadialIntegrals(double eps1, double eps2, double rest1, double rest2, double h) {
     const int reach = static_cast<int>(34 / h);
@@ -128,7 +130,7 @@ TEST_CASE("N16: inertia and the blocks of dynamic exponents agree with integrals
       CHECK(std::abs(I.M(5, 5) - 2 * xx) <= 1e-11 * I.M(5, 5));
       CHECK(std::abs(I.M(3, 4)) <= 1e-13 * I.M(3, 3));
       CHECK(I.M.block<3, 3>(0, 3).norm() <= 1e-13 * I.M(0, 0));
-      // Rounding errors of the differences limit the exactness of these integrals.
+      // Rounding errors of the differences limit the accuracy of these integrals.
       CHECK(std::abs(I.M(6, 6) - exact.by_1_1 * density) <= 1e-10 * I.M(6, 6));
       CHECK(std::abs(I.M(7, 7) - exact.by_2_2 * density) <= 1e-10 * I.M(7, 7));
       CHECK(std::abs(I.M(6, 7) - exact.by_1_2 * density) <= 1e-10 * std::sqrt(I.M(6, 6) * I.M(7, 7)));

@@ -23,6 +23,7 @@ void make_shape_dynamic(Part& part) {
   part.make_dynamic(names);
 }
 
+/// Checks that two parts, one of them with links that are frozen as the identity, give the same bits.
 void check_equal_without_links(Part& with_null_links, Part& without_links) {
   Draws draws(1);
   make_shape_dynamic(with_null_links);

@@ -32,6 +32,7 @@ inline double draw_end(Draws& draws, const Parameter& p) {
   return draws.uniform(0, 1) < 0.5 ? range.min : range.max;
 }
 
+/// Dynamic parameters with their rates, and the angular velocity (rad/s, body) of a part.
 struct RandomState {
   VecMax<double> q_s, q_s_dot;
   Vec3<double> omega;

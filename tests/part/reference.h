@@ -24,6 +24,8 @@ inline Material<Long> widen(const Material<double>& m) {
 }
 
 namespace detail {
+/// If `name` is this shape, sets the position s and the half height h, moves b past the parameters of the
+/// shape, and returns true.
 template <class Shape>
 bool shape_point(const std::string& name, const Material<Long>& m, const Long*& b, Vec3<Long>& s, Long& h) {
   if (name != Shape::name) return false;
@@ -33,6 +35,7 @@ bool shape_point(const std::string& name, const Material<Long>& m, const Long*& 
   b += shape_size<Shape>;
   return true;
 }
+/// If `name` is this deformation, applies it to s, moves b past its parameters, and returns true.
 template <class Deform>
 bool link_point(const std::string& name, const Long*& b, Vec3<Long>& s, const Long& h) {
   if (name != Deform::name) return false;

@@ -1,5 +1,6 @@
 // Parts with equal descriptions share their constants, so that the search for mass points runs once. Shared
-// constants have the bits of own ones, and any setting that they depend on separates two parts.
+// constants have the same bits as constants of one part alone. Parts with different values of a setting on
+// which the constants depend do not share constants.
 #include "catch.h"
 
 #include <cmath>
@@ -31,7 +32,7 @@ struct Setting {
 
 }  // namespace
 
-TEST_CASE("parts with equal descriptions share constants with the bits of own constants") {
+TEST_CASE("parts with equal descriptions share constants, with the same bits as constants of one part") {
   ConstantsCache cache;
   std::vector<std::unique_ptr<Part>> parts;
   for (int i = 0; i < 5; ++i) {
@@ -59,7 +60,7 @@ TEST_CASE("parts with equal descriptions share constants with the bits of own co
       CHECK(alone->mass_points().mass[i][lane] == shared.mass_points().mass[i][lane]);
 }
 
-TEST_CASE("each setting on which the constants depend separates two parts") {
+TEST_CASE("parts that differ in a setting on which the constants depend do not share constants") {
   const std::vector<Setting> settings{{"rest value",
                                        [](Part& p) {
                                          p.rest({{"a2", std::nextafter(0.2, 1)}});
@@ -135,7 +136,7 @@ TEST_CASE("each setting on which the constants depend separates two parts") {
   CHECK(cache.computed() == ++expected);
 }
 
-TEST_CASE("a part that changes gets other constants, and those that it shared do not change") {
+TEST_CASE("a part that changes gets other constants, and the shared constants do not change") {
   ConstantsCache cache;
   const std::unique_ptr<Part> one = tapered("one"), other = tapered("other");
   one->prepare(cache);
@@ -147,7 +148,7 @@ TEST_CASE("a part that changes gets other constants, and those that it shared do
   CHECK(std::abs(other->total_mass() - 2 * mass) <= 1e-15 * mass);
 }
 
-TEST_CASE("a cache of constants forgets those that no part uses any more") {
+TEST_CASE("a cache of constants removes constants that no part uses any more") {
   ConstantsCache cache;
   const std::unique_ptr<Part> part = make_part("ball", "sphere", {}, 1000);
   for (int i = 1; i <= 200; ++i) {

@@ -101,6 +101,7 @@ std::unique_ptr<Part> moderate_part(const std::string& shape, const std::vector<
 Eigen::Matrix3Xd rest_positions(const Part& part, const Solid& solid) {
   return part.s(solid.material(), part.parameters().rest());
 }
+/// Returns the smallest quality of the elements of a part at rest.
 double quality(const Part& part, int resolution) {
   const Solid solid(part, resolution);
   return geometry(solid, rest_positions(part, solid)).min_quality;

@@ -63,6 +63,7 @@ double min_area(const TriangleMesh& mesh) {
   }
   return min_area;
 }
+/// Returns a part whose chain has random rest values, without folds.
 std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vector<std::string>& chain) {
   std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
   if (part->shape().mesh() == MeshPattern::torus) part->rest({{"a3", 1}});

@@ -113,7 +113,7 @@ TEST_CASE("assembly closes loops, hinges and welds, and shortens strings that ar
 }
 
 TEST_CASE("assembly changes parameters in proportion to their compliance", "[joints]") {
-  // The anchors are farther apart than the two parts are long. Both parts must stretch, the soft one more.
+  // The anchors are farther apart than the two parts are long. Both must stretch, the soft part more.
   MultiBody body;
   body.stabilization.assemble_first = true;
   for (const char* name : {"soft", "stiff"}) {

@@ -34,7 +34,7 @@ double gap(const Simulation& simulation, int joint = 0) {
 }  // namespace
 
 TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about the pin", "[joints]") {
-  // The part is rotated relative to its pin; on a ball joint it would wobble.
+  // The part is rotated relative to its pin; on a ball joint the part would wobble.
   const Vec3<double> pin = Vec3<double>(0.2, 1, 0).normalized(), g(0, 0, -9.81);
   MultiBody body;
   const Eigen::Quaterniond R = turn({1, 0.4, -0.3}, 0.9);
@@ -161,7 +161,7 @@ TEST_CASE(
         MultiBody body;
         Part& a = test::tumbling_solid(body, "a");
         // The directions of the joint are defined on the rest shape. The rest values equal the initial
-        // values, so that these directions are also those of time 0.
+        // values, so that the directions are the same at time 0.
         a.rest({{"a1", 0.32}, {"twist.angle", 0.6}, {"bend.angle", 0.6}, {"bend.direction", 0.3}});
         if (!deforming) {
           std::vector<std::string> names;
@@ -333,7 +333,7 @@ TEST_CASE("N48: joints switch on and off at their times, also between steps", "[
     CHECK((engaged.impulse.force - Vec3<double>(-m / 2, 0, 0)).norm() <= 1e-12 * m);
   }
   SECTION("a joint that switches on away from the centres of mass: its impulse and its work") {
-    // Two spheres translate and rotate; at 0.3 s a point of one meets a point of the other.
+    // Two spheres translate and rotate; at 0.3 s a point of the first sphere meets a point of the second.
     const double r = 0.2, on = 0.3, m[] = {1, 0.4};
     const Vec3<double> meet(0.1, 0.2, -0.3), v[] = {{1, 0.2, 0}, {-0.3, 0, 0.1}},
                                              w[] = {{0, 0, 2}, {1, 0, 0}};

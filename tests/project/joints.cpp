@@ -99,7 +99,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding and for any step",
+TEST_CASE("BaumgarteRule::step_consistent: C_n = C0 r^n (1 + n (1 - r)), to rounding and for any step",
           "[joints]") {
   for (const double rate_h : {0.01, 0.3, 1.0, 5.0, 1000.0}) {
     MultiBody body;
@@ -386,7 +386,7 @@ TEST_CASE("N39: a hanging chain carries its weight: each joint force is the weig
   }
 }
 
-TEST_CASE("N41: doubled and tripled joints give the motion of single ones", "[joints]") {
+TEST_CASE("N41: doubled and tripled joints give the motion of single joints", "[joints]") {
   VecX<double> single;
   for (const int copies : {1, 2, 3}) {
     MultiBody body;
@@ -540,7 +540,7 @@ TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings
     CHECK(ledger.work[static_cast<int>(Work::limits)] ==
           Approx(-mass.total_mass() * 9.81 * 0.5).epsilon(method[0] == 'r' ? 1e-9 : 0.01));
   }
-  // Taut and swinging: the motion is that of a rod.
+  // While the string is taut, the mass moves as on a rod.
   VecX<double> q[2];
   for (const bool rod : {true, false}) {
     MultiBody body;
@@ -599,8 +599,8 @@ TEST_CASE("N60: two strings that go taut at the same time, and a string whose en
 }
 
 TEST_CASE("N46: joints act through the global parameters, with and without limits", "[joints]") {
-  // Two world points 1.2 m apart hold the tips of an ellipsoid whose rest length is 1 m: it stretches. In the
-  // second model a limit stops the stretch.
+  // The tips of an ellipsoid with a rest length of 1 m are joined to two world points that are 1.2 m apart,
+  // so that the ellipsoid stretches. In the second model a limit stops the stretch.
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -619,7 +619,7 @@ TEST_CASE("N46: joints act through the global parameters, with and without limit
     simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
     CHECK(std::abs(work.joints.lambda[2]) == Approx(1000 * 0.1 / 2).epsilon(1e-9));
 
-    // A weight hangs from a soft ellipsoid and stretches it to its limit, and no further.
+    // A weight hangs from a soft ellipsoid and stretches it to its limit.
     MultiBody hanging;
     Part& soft = test::add(hanging, "soft", "ellipsoid", {}, 1000);
     soft.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.5}}).stiffness({{"a3", 1000}}).limits("a3", {0.3, 0.55});
@@ -641,7 +641,8 @@ TEST_CASE("N46: joints act through the global parameters, with and without limit
 }
 
 TEST_CASE("N46: a joint that can close only by bending the part", "[joints][long]") {
-  // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two world points hold them 0.9 m apart.
+  // An ellipsoid of 1 m that is bent by the angle b has tips that are sin(b) / b m apart. They are joined to
+  // two world points that are 0.9 m apart.
   double b = 0.8;
   for (int i = 0; i < 50; ++i) b -= (std::sin(b) / b - 0.9) / ((b * std::cos(b) - std::sin(b)) / (b * b));
   const double k = 50, rest = 0.4, push = k * (b - rest) * b * b / (std::sin(b) - b * std::cos(b));

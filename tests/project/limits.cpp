@@ -105,7 +105,7 @@ TEST_CASE("gravity and a spring press the parameter of a hanging part onto its l
   }
 }
 
-TEST_CASE("N04: exponents pulled beyond their range stay in it", "[limits][long]") {
+TEST_CASE("N04: exponents that are pulled beyond their range stay in the range", "[limits][long]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -226,7 +226,7 @@ TEST_CASE("limits are checked at the rest value, in either order of the calls", 
   Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
   part.make_dynamic({"a1"}).limits("a1", {0.002, 900}).rest({{"a1", 5}});
   CHECK_THROWS_WITH(Model(body), test::has_text("limits [0.002, 900] of a1 must be within"));
-  part.limits("a1", {0.005, 4000});  // wider than the default rest value allows
+  part.limits("a1", {0.005, 4000});  // valid for this rest value, but not for the default
   CHECK_NOTHROW(Model(body));
 }
 

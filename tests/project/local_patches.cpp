@@ -18,8 +18,9 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kPatch = 0.6;
+constexpr double kPatch = 0.6;  // radius of a patch, m
 
+/// Returns settings of a soft shell or solid. order: order of the elements of a solid.
 LocalSettings soft(int resolution, bool shell, int order = 1) {
   LocalSettings settings;
   settings.resolution = resolution;

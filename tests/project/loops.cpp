@@ -128,7 +128,7 @@ void ring(MultiBody& body, int links, double mass_ratio = 1) {
   }
 }
 
-/// Return the mass (kg) of a link as a function of its number. heavy_end: `mass` for the last link, 1 kg for
+/// Return functions from the number of a link to its mass (kg). heavy_end: `mass` for the last link, 1 kg for
 /// all others. alternating: two masses in turn.
 std::function<double(int)> heavy_end(int links, double mass) {
   return [=](int i) { return i + 1 == links ? mass : 1; };

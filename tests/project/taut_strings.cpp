@@ -14,7 +14,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kG = 9.81;  // m/s^2
 
 Part& ball(MultiBody& body, const char* name, const Vec3<double>& at) {
   return body.add(make_part(name, "sphere", {}, 1000)).rest({{"r", 0.1}}).place(at);

@@ -37,6 +37,7 @@ double mean_difference(const Image& a, const Image& b) {
   return sum / static_cast<double>(a.rgb.size());
 }
 
+/// Returns the message with which an invalid picture is refused, or an empty text.
 std::string reason(Renderer& renderer, const Picture& picture) {
   try {
     renderer.draw(picture);

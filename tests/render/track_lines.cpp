@@ -1,5 +1,5 @@
 // Tracks are curves at any frame rate: their points are on the path of the tracked point, and the lines
-// between these points are close to it.
+// between these points are close to this path.
 #include <pliant/render/track_lines.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kRadius = 1.5, kTurnRate = 20;  // of the orbit, m and rad/s
+constexpr double kRadius = 1.5, kTurnRate = 20;  // orbit: radius, m, and angular velocity, rad/s
 
 /// Returns a scene with a ball that orbits the origin on a spring of rest length 0, and a ball at rest. Their
-/// centres are tracked. The pictures are much rarer than the turns of the orbit.
+/// centres are tracked. Between two pictures the ball makes more than one turn.
 std::unique_ptr<Scene> orbit() {
   auto scene = std::make_unique<Scene>();
   scene->end = 1;
@@ -64,7 +64,7 @@ void check_lines(Scene& scene, double error) {
   CHECK(turned == Approx(kTurnRate * scene.end).epsilon(0.01));  // more than three turns
   // The line between two points is nearer to the circle than a thousandth of the box around the circle.
   CHECK(kRadius * (1 - std::cos(widest / 2)) < 1e-3 * std::sqrt(8.0) * kRadius);
-  // Points nearer than that to each other are left out.
+  // Points that are nearer to each other than this distance are left out.
   CHECK(static_cast<double>(points.size()) < kTurnRate * scene.end / (1e-3 * std::sqrt(8.0)));
 
   CHECK(lines[1].points().size() == 1);

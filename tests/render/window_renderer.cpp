@@ -46,7 +46,7 @@ TEST_CASE("a window has the pixels of an image, in full quality and nearly in dr
   // The shader computes sRGB in single precision, the image in integers.
   CHECK(largest_difference(renderer.read(kSide, kSide), image) <= 1);
   const Image full = renderer.read(kSide, kSide);
-  // Drafts differ from the full quality by less the more samples they have.
+  // The more samples a draft has, the less it differs from the picture in full quality.
   double last = 20;
   for (const auto quality : {WindowRenderer::Quality::half_draft, WindowRenderer::Quality::two_thirds_draft,
                              WindowRenderer::Quality::draft}) {

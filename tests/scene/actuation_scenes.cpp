@@ -21,8 +21,8 @@ using Run = test::SceneRun;
 
 namespace {
 
-/// A bar that a hinge along y connects to the world at its end; gravity is zero. The distance of its centre
-/// from the hinge is 0.5 m. keys: more keys of the hinge; more: more keys of the scene.
+/// Returns a scene without gravity, in which a hinge along y connects an end of a bar to the world. The
+/// centre of the bar is 0.5 m from the hinge. keys: more keys of the hinge; more: more keys of the scene.
 std::string hinged_bar(const std::string& keys, const std::string& more = "") {
   return R"json({"gravity": [0, 0, 0],
     "parts": [{"name": "bar", "shape": "box", "parameters": {"a1": 0.5, "a2": 0.05, "a3": 0.05},
@@ -34,7 +34,7 @@ std::string hinged_bar(const std::string& keys, const std::string& more = "") {
          "}],\n\"sensors\": [{\"name\": \"angle\", \"value\": \"pin.angle\"}," +
          R"json({"name": "rate", "value": "pin.rate"}])json" + (more.empty() ? "" : ", " + more) + "}";
 }
-constexpr double kInertia = 0.3 + 2 * 0.5 * 0.5;  // of the bar about the hinge, kg m^2
+constexpr double kInertia = 0.3 + 2 * 0.5 * 0.5;  // moment of inertia of the bar about the hinge, kg m^2
 
 /// Returns x and x_dot of x_ddot = -(k (x - 1) + c x_dot) / m from rest at x = 0, with c^2 < 4 k m.
 std::array<double, 2> step_response(double k, double c, double m, double t) {
@@ -124,10 +124,11 @@ TEST_CASE("a drive with constants is a spring, whose energy is in the ledger", "
   CHECK(moved.work[static_cast<int>(Work::actuation)] == Approx(moved.kinetic).epsilon(1e-8));
 }
 
-TEST_CASE("a limit of a hinge returns the restitution of the rate", "[actuation]") {
+TEST_CASE("a limit of a hinge reverses the rate and multiplies it by the restitution", "[actuation]") {
   const std::string limits = R"json("limits": [-1, 0.7], "restitution": 0.6,
                                     "drive": {"force": 4, "max_force": 4})json";
-  // A constant torque moves the bar from rest; after the impact at 0.7 rad it returns with 0.6 of the rate.
+  // A constant torque moves the bar from rest; at the impact at 0.7 rad, the rate is reversed and multiplied
+  // by 0.6.
   const double a = 4 / kInertia, at_impact = std::sqrt(2 * a * 0.7), t_impact = at_impact / a, after = 0.1;
   for (const std::string method : {"rk4", "semi_implicit_euler", "dormand_prince"}) {
     std::vector<double> errors;

@@ -85,7 +85,7 @@ TEST_CASE("without contact between parts only named pairs collide", "[contact]")
   CHECK(none.height("a") == Approx(0.1 - fall_height(0.6)).epsilon(1e-9));
 }
 
-TEST_CASE("a pendulum passes through the post of its joint, unless a pair names both", "[contact]") {
+TEST_CASE("a pendulum passes through the post of its joint, unless a pair rule names both", "[contact]") {
   const auto swing = [](const std::string& contact) {
     return FinishedRun(R"json({"parts": [
       {"name": "post", "shape": "box", "parameters": {"a1": 0.05, "a2": 0.2, "a3": 0.5}, "position": [0, 0, -0.5], "fixed": true},

@@ -20,7 +20,7 @@ using Run = test::SceneRun;
 
 namespace {
 
-/// The centre of mass of the only part of a scene, which is rigid, m.
+/// Returns the centre of mass of the only part of a scene, which is rigid, m, world.
 Vec3<double> centre(const Run& run) {
   const Inertia<double>& inertia = run.scene->body.parts()[0]->rest_inertia();
   const State& state = run.simulation->state();
@@ -28,7 +28,8 @@ Vec3<double> centre(const Run& run) {
          run.simulation->model().orientation(state, 0) * Vec3<double>(inertia.moment / inertia.mass);
 }
 
-/// A scene without gravity with one part and one distributed force. part: more keys of the part.
+/// Returns a scene without gravity with one part and one distributed force. part: more keys of the part;
+/// list: surface_forces or body_forces; force: keys of the force.
 std::string scene_of(const std::string& part, const std::string& list, const std::string& force) {
   return R"json({"gravity": [0, 0, 0], "parts": [{"name": "a", )json" + part + "}], \"" + list +
          R"json(": [{"part": "a", )json" + force + "}]}";
@@ -59,8 +60,8 @@ TEST_CASE("buoyancy is the weight of the displaced water, and a pressure does th
     errors[k] = std::abs(a[2] - 9.81 * 1000 / 500);
     CHECK(a.head<2>().norm() <= 1e-12 * a[2]);
     CHECK(a.segment<3>(3).norm() <= 1e-10);
-    // M = m / 5 for each semi-axis of an ellipsoid. dV/da_k = V / a_k. The pressure varies over the body by a
-    // force that moves no semi-axis.
+    // M = m / 5 for each semi-axis of an ellipsoid. dV/da_k = V / a_k. The variation of the pressure over
+    // the body exerts no generalised force on a semi-axis.
     const double V = 4 * kPi / 3 * 0.3 * 0.2 * 0.5, m = 500 * V, p = 9810 * 2;
     const double lengths[] = {0.3, 0.2, 0.5};
     for (int i = 0; i < 3; ++i)
@@ -82,7 +83,7 @@ TEST_CASE("a drag of the surface of a box is exact, because its faces are flat",
 }
 
 TEST_CASE("a force along the normal acts on the side from which the wind blows", "[loads]") {
-  // Newton's pressure on a plate that faces a wind of 3 m/s along x: only the front face counts.
+  // Newton's pressure on a plate that faces a wind of 3 m/s along x acts on the front face only.
   const Run run(
       scene_of(R"json("shape": "box", "density": 100, "parameters": {"a1": 0.01, "a2": 0.2, "a3": 0.5},
                                "velocity": [1, 0, 0])json",
@@ -140,8 +141,9 @@ TEST_CASE("a force per mass acts on the nodes of soft parts", "[loads]") {
   }
 }
 
-TEST_CASE("distributed forces keep the order of each method, and their work closes the balance", "[loads]") {
-  // A soft ellipsoid in water that swings and is damped.
+TEST_CASE("distributed forces keep the order of each method, and the energy balance contains their work",
+          "[loads]") {
+  // A soft ellipsoid swings in water and is damped.
   const std::string text = scene_of(
       R"json("shape": "ellipsoid", "density": 600, "deformations": ["bend"],
              "parameters": {"a1": {"rest": 0.3, "stiffness": 4e4}, "a2": 0.2, "a3": {"rest": 0.5, "stiffness": 5e4},
@@ -218,7 +220,8 @@ TEST_CASE("body forces act on parts with every basis of local deformation", "[lo
   }
 }
 
-TEST_CASE("the work of distributed forces on bodies in contact closes the balance", "[loads][contact]") {
+TEST_CASE("the energy balance contains the work of distributed forces on bodies in contact",
+          "[loads][contact]") {
   const std::string text =
       scene_of(R"json("shape": "box", "parameters": {"a1": 0.2, "a2": 0.2, "a3": 0.1},
       "position": [0, 0, 0.1], "velocity": [1, 0, 0])json",
@@ -268,7 +271,7 @@ TEST_CASE("distributed forces without effect and hidden names are reported", "[l
   CHECK_THAT(
       messages_of(text.substr(0, text.size() - 1) + R"json(, "sensors": [{"name": "x", "value": "t"}]})json"),
       test::has_text("another name of the sensor"));
-  // A part with a fault gets no second one.
+  // A part with a fault causes no second message.
   const std::string faulty = messages_of(scene_of(
       R"json("shape": "sphere", "local": {"laws": [{"type": "membrane", "E": 1e5, "thickness": 0.01}]})json",
       "body_forces", R"json("acceleration": [1, 0, 0])json"));

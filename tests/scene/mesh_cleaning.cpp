@@ -1,5 +1,5 @@
-// Common flaws of mesh files are removed, and each kind is reported with its number. Solids that touch stay
-// closed solids.
+// Common flaws of mesh files are removed, and each kind of flaw is reported with the number of flaws. Solids
+// that touch stay closed solids.
 #include "catch.h"
 
 #include <algorithm>
@@ -19,6 +19,7 @@ using namespace mesh_samples;
 
 namespace {
 
+/// A mesh that is read from a file, and the obstacle that it gives.
 struct Cleaned {
   MeshFile mesh;
   ObstacleMesh obstacle;
@@ -41,7 +42,7 @@ TEST_CASE("vertices in no triangle, loose edges and second copies of faces are r
   CHECK(flat.mesh.notes == std::vector<std::string>{"2 triangles with two equal corners are removed"});
 }
 
-TEST_CASE("coincident corners become one vertex, and nearly coincident ones do not") {
+TEST_CASE("coincident corners become one vertex, and nearly coincident corners do not") {
   const Cleaned sheet("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-7\nf 1 2 3\nf 6 4 5\n");
   CHECK(sheet.mesh.vertices.cols() == 5);
   CHECK(sheet.mesh.notes.empty());
@@ -52,7 +53,7 @@ TEST_CASE("coincident corners become one vertex, and nearly coincident ones do n
 
 TEST_CASE("slivers are removed, and the mesh stays closed") {
   // The upper face of a cube has a vertex 9 on its edge from 6 to 5 that the front face does not have. A
-  // sliver of no height fills the slit.
+  // sliver with a height of 1e-9 fills the slit.
   std::string text = obj_cube();
   text.replace(text.find("f 5 6 7 8\n"), 10, "");
   text += "v 0.5 1e-9 1\nf 9 6 7 8 5\nf 5 6 9\n";
@@ -61,7 +62,7 @@ TEST_CASE("slivers are removed, and the mesh stays closed") {
         std::vector<std::string>{"1 sliver is removed (height below 2e-7 of the longest edge)"});
   CHECK(divided.obstacle.closed());
   CHECK(divided.mesh.vertices.cols() == 9);
-  // A needle: two vertices at a distance of 1e-9. They become one.
+  // A needle: two vertices at a distance of 1e-9. They become one vertex.
   std::string split = obj_cube();
   split.replace(split.find("f 5 6 7 8\n"), 10, "");
   split.replace(split.find("f 1 2 6 5\n"), 10, "");
@@ -81,7 +82,7 @@ TEST_CASE("solids that touch in a face become one solid, if the triangles of the
   CHECK(two.mesh.vertices.cols() == 12);
   CHECK(two.obstacle.vertices().cols() == 16);
   CHECK(two.obstacle.closed());
-  // The diagonals are the same.
+  // Now the diagonals in both cubes are equal.
   std::string second = obj_cube(1, 8);
   const std::string face = "f 12 9 13 16\n";
   second.replace(second.find(face), face.size(), "f 9 13 16 12\n");
@@ -95,7 +96,7 @@ TEST_CASE("solids that touch in a face become one solid, if the triangles of the
 }
 
 TEST_CASE("solids that touch along an edge or in a vertex keep their own edges") {
-  // The second cube is at (1, 1, 0): it touches the first one along the edge x = y = 1.
+  // The second cube is at (1, 1, 0): it touches the first cube along the edge x = y = 1.
   std::string second = obj_cube(1, 8);
   std::string moved = "";
   for (const Vertex& v : cube_vertices())

@@ -1,5 +1,5 @@
-// Meshes are read from files of all formats, with the bits of their numbers. Files that are not meshes are
-// refused with the place of the fault.
+// Meshes are read from files of all formats, and their numbers are kept bit for bit. Files that are not
+// meshes are refused with the place of the fault.
 #include "catch.h"
 
 #include <sys/stat.h>
@@ -58,7 +58,7 @@ std::string ply(int vertices, const std::string& faces) {
 
 }  // namespace
 
-TEST_CASE("a cube is read from every format, closed and with its outside outside") {
+TEST_CASE("a cube is read from every format, closed and with outward normals") {
   for (const Sample& sample : cubes()) {
     CAPTURE(sample.name);
     const MeshFile mesh = read_mesh(sample.name, sample.bytes);
@@ -106,7 +106,7 @@ TEST_CASE("nodes of a glTF file place their meshes; a mirrored mesh is not insid
     CHECK(ObstacleMesh(mesh.vertices, mesh.triangles).closed());
   }
   CHECK(volume(cube(R"([{"mesh": 0, "matrix": [0,1,0,0, 1,0,0,0, 0,0,1,0, 5,6,7,1]}])")) == Approx(1));
-  // Two mirrors are none; the child is placed relative to its parent.
+  // Two reflections cancel each other; the child is placed relative to its parent.
   const MeshFile twice = cube(R"([{"children": [1], "scale": [-1, 1, 1], "translation": [10, 0, 0]},
                                   {"mesh": 0, "scale": [-1, 1, 1], "translation": [1, 2, 3]}])");
   CHECK(volume(twice) == Approx(1));
@@ -121,7 +121,7 @@ TEST_CASE("nodes of a glTF file place their meshes; a mirrored mesh is not insid
 }
 
 TEST_CASE("polygons become triangles that cover them, concave ones too") {
-  // An L of area 3, and an arrow.
+  // The polygons are an L of area 3 and an arrow.
   const MeshFile ell = read_mesh("a.obj",
                                  "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 6 5 4 3 2 1\n"
                                  "v 5 0 0\nv 6 1 0\nv 5 3 0\nv 5.5 1 0\nf 7 8 9 10\n");
@@ -145,7 +145,7 @@ TEST_CASE("files that are not meshes are refused with the place of the fault") {
   refused("a.obj", obj("f 1 2 3\n", "0 x 0"), "a.obj:3:5: found \"x\"");
   refused("a.obj", obj("f 1 2 3\n", "0 nan 0"), "a.obj:3:5: found \"nan\"");
   refused("a.obj", obj("f 1 2 3\n", "0 1e400 0"), "a.obj:3:5: found \"1e400\"");
-  // Added to the place of the first digit, this exponent exceeds the range of long long.
+  // The sum of this exponent and the place of the first digit exceeds the range of long long.
   refused("a.obj", obj("f 1 2 3\n", "0 1e9223372036854775807 0"),
           "a.obj:3:5: found \"1e9223372036854775807\"");
   refused("a.obj", obj("f 1 2 3\n", "0 " + std::string(400, '9') + " 0"), "a.obj:3:5: found");
@@ -203,7 +203,7 @@ TEST_CASE("unreadable files are reported with the error of the file system") {
   };
   CHECK_THAT(fault("bowls.obj"), test::has_text("No such file or directory; did you mean \"bowl.obj\"?"));
   CHECK_THAT(fault("folder.obj"), test::has_text("Is a directory"));
-  // Nobody writes into the pipes. Reading them would never end.
+  // No process writes to the pipes, so that a read would never end.
   REQUIRE(::mkfifo((folder / "pipe.obj").c_str(), 0600) == 0);
   CHECK_THAT(fault("pipe.obj"), test::has_text("it is a pipe or a device; expected a regular file"));
   set_bytes(folder / "names_pipe.obj", "mtllib pipe.obj\n" + obj("f 1 2 3\n"));

@@ -29,12 +29,13 @@ constexpr int kEach = 8;  // builds with sanitizers run one in kEach cases
 constexpr int kEach = 1;
 #endif
 
+/// Numbers of meshes that were read and refused, and the longest time of a case.
 struct Outcomes {
   int meshes = 0, refused = 0;
   double slowest = 0;  // s
 };
 
-/// Reads a mesh. A mesh that is accepted is finite, and its triangles refer to its vertices.
+/// Reads a mesh. Checks that an accepted mesh is finite and that its triangles refer to its vertices.
 void read_any(const std::string& name, const std::string& bytes, Outcomes& outcomes) {
   const auto start = std::chrono::steady_clock::now();
   try {
@@ -98,6 +99,7 @@ std::string mutated(std::string bytes, std::mt19937& random) {
   return bytes;
 }
 
+/// Reads of_each / kEach mutated files of each format.
 void run_mutations(int of_each, Outcomes& outcomes) {
   for (const Sample& sample : mesh_samples::cubes()) {
     std::seed_seq seed(sample.name.begin(), sample.name.end());

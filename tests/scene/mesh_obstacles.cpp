@@ -1,5 +1,5 @@
-// Bodies fall on meshes from files: a mirrored box is solid, and edges far from the origin are at their
-// place.
+// Bodies fall on meshes from files: a mirrored box is solid, and edges far from the origin are
+// accurate.
 #include "catch.h"
 
 #include <memory>

@@ -46,8 +46,8 @@ void put(std::string& bytes, T value, bool swap = false) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// format: ascii, binary_little_endian or binary_big_endian. The machine is little-endian. extra: bytes
-/// between the header and the data.
+/// Returns a PLY file. format: ascii, binary_little_endian or binary_big_endian. The machine is
+/// little-endian. extra: bytes between the header and the data.
 inline std::string ply_cube(const std::string& format, const std::string& extra = "") {
   std::string header = "ply\nformat " + format +
                        " 1.0\ncomment a cube\nelement vertex 8\nproperty double x\nproperty double y\n"
@@ -129,8 +129,8 @@ inline std::string base64(const std::string& bytes) {
   return text + std::string((4 - text.size() % 4) % 4, '=');
 }
 
-/// nodes: the JSON array of the nodes; node 0 is the root, and mesh 0 is the cube. uri: of the data; empty
-/// for a GLB file.
+/// Returns the JSON text of a glTF file. nodes: JSON array of the nodes; node 0 is the root, and mesh 0 is
+/// the cube. uri: address of the data; empty for a GLB file.
 inline std::string gltf_json(const std::string& nodes, const std::string& uri) {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": )" + nodes +
          R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],

@@ -1,6 +1,6 @@
-// Rings of point-to-point joints: their names and points, and the orientation that they hold. Nine rows for
-// the six motions of two rigid parts are solved as exactly as the six rows of a weld, also from an open
-// start.
+// Rings of point-to-point joints: their names and points, and the relative orientation that they fix. A ring
+// of three points has nine rows for the six relative motions of two rigid parts. These rows are solved as
+// exactly as the six rows of a weld, also if the joints are open at the start.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -43,6 +43,7 @@ Eigen::Quaterniond orientation(const Simulation& simulation, const std::string& 
 double angle_between(const Simulation& simulation, const std::string& a, const std::string& b) {
   return orientation(simulation, a).angularDistance(orientation(simulation, b));
 }
+/// Returns the widest gap of all joints, m.
 double widest_gap(const Simulation& simulation) {
   double widest = 0;
   for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
@@ -55,7 +56,7 @@ Vec3<double> place_at_rest(const Point& point) {
   return point.part->s({point.material}, point.part->parameters().rest()).col(0);
 }
 
-/// Two rigid parts swing on a ball joint. joint: the joint between them.
+/// Returns a scene of two rigid parts that swing on a ball joint. joint: the joint between the parts.
 std::string double_bar(const std::string& joint) {
   return R"json({"parts": [
       {"name": "upper", "shape": "box", "parameters": {"a1": 0.2, "a2": 0.15, "a3": 0.4}, "position": [0, 0, 1.6],
@@ -68,8 +69,8 @@ std::string double_bar(const std::string& joint) {
 const std::string kEnds =
     R"json("from": {"part": "lower", "at": {"near": [0, 0, 0.35]}}, "to": {"part": "upper", "at": {"near": [0, 0, -0.35]}})json";
 
-/// Two solids far apart and rotated by an angle (rad), which a ring connects. a3: the value of this parameter
-/// of one of them.
+/// Returns a scene of two solids far apart, rotated by an angle (rad) relative to each other, with a ring of
+/// joints between them. a3: value of the parameter a3 of one solid.
 std::string scattered(double angle, const std::string& a3) {
   return R"json({"gravity": [0, 0, 0], "stabilization": {"rate": 6},
     "parts": [
@@ -97,7 +98,7 @@ TEST_CASE("a ring makes ball joints NAME.1, NAME.2, ... on equal circles in both
     CHECK(joint.name() == "neck." + std::to_string(k + 1));
     CHECK(joint.type() == std::string("ball"));
     CHECK(simulation.model().gap(simulation.state(), static_cast<int>(k + 1)) <= 1e-15);
-    // The axis is that of z, and the first direction perpendicular to it that of x.
+    // The axis of the ring is along z, and the direction from the axis to the first point is along x.
     const double angle = kPi / 2 * static_cast<double>(k);
     const Vec3<double> offset(0.08 * std::cos(angle), 0.08 * std::sin(angle), 0);
     CHECK((place_at_rest(joint.points()[0]) - Vec3<double>(0, 0, 0.35) - offset).norm() <= 1e-15);
@@ -105,7 +106,7 @@ TEST_CASE("a ring makes ball joints NAME.1, NAME.2, ... on equal circles in both
   }
 }
 
-TEST_CASE("a ring with a tilted axis is a circle perpendicular to it", "[ring]") {
+TEST_CASE("a ring with a tilted axis is a circle perpendicular to the axis", "[ring]") {
   const auto scene =
       scene_of(double_bar(R"json({"type": "ball", "name": "neck", )json" + kEnds +
                           R"json(, "ring": {"count": 5, "radius": 0.06, "axis": [1, 1, 1]}})json"));
@@ -121,7 +122,9 @@ TEST_CASE("a ring with a tilted axis is a circle perpendicular to it", "[ring]")
   CHECK(points == 5);
 }
 
-TEST_CASE("rings that cannot hold are refused: tiny ones, and unequal ones of rigid shells", "[ring]") {
+TEST_CASE(
+    "rings that cannot close or fix the orientation are refused: tiny rings, unequal rings of rigid shells",
+    "[ring]") {
   const auto ring = [](const char* radius) {
     return R"json({"type": "ball", "name": "neck", )json" + kEnds +
            R"json(, "ring": {"count": 3, "radius": )json" + radius + "}}";
@@ -145,7 +148,7 @@ TEST_CASE("rings that cannot hold are refused: tiny ones, and unequal ones of ri
              test::has_text("name given twice"));
 }
 
-TEST_CASE("three points hold two rigid parts as a weld does", "[ring]") {
+TEST_CASE("three points connect two rigid parts as a weld does", "[ring]") {
   const auto held = [&](const std::string& joint) {
     const auto scene = scene_of(double_bar(joint));
     auto simulation = std::make_unique<Simulation>(scene->body, "dop853", 1, 1e-12);
@@ -180,7 +183,7 @@ TEST_CASE("two points are a hinge about the line through them", "[ring]") {
   CHECK(turned > 0.03);
 }
 
-TEST_CASE("a ring closes from an open, rotated start and then holds the orientation", "[ring]") {
+TEST_CASE("a ring closes from an open, rotated start and then keeps the orientation", "[ring]") {
   for (const char* a3 : {"0.35", R"json({"rest": 0.35, "stiffness": 3000, "initial": 0.3})json"})
     for (const double angle : {0.0, 0.5, 1.5, 2.5, 3.0}) {
       CAPTURE(a3, angle);

@@ -1,6 +1,6 @@
-// Records of a scene describe its keys. The tests cover the checks and messages, the values that readers
-// provide, and the JSON Schema, which is generated from the records and checked by an independent validator.
-// tests/README.md explains the numbers I01, I02, ... in test names (stress catalogue).
+// Records of a scene describe its keys. The tests cover the checks and messages, and the values that readers
+// provide. They also cover the JSON Schema, which is generated from the records and checked by an independent
+// validator. tests/README.md explains the numbers I01, I02, ... in test names (stress catalogue).
 #include <pliant/scene/schema/schema.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// The paper's Fig. 5: twelve point-to-point joints assemble and hold a snowman, which hops along a prescribed
-// path by changes of its own shape and then stands still.
+// The paper's Fig. 5: twelve point-to-point joints assemble a snowman and keep it together. The snowman hops
+// along a prescribed path by changes of its own shape and then stands still.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,13 +21,13 @@ using namespace pliant;
 
 namespace {
 
-/// Times at which the snowman is assembled and has landed, s. It begins to hop after the latter.
+/// Times at which the snowman is assembled, and at which it has landed, s. Then it begins to hop.
 constexpr double kAssembled = 3.1, kLanded = 4.9;
 
 Vec3<double> position(const Simulation& simulation, int part) {
   return simulation.state().q.segment<3>(simulation.model().parts()[static_cast<std::size_t>(part)].q0);
 }
-/// The pairs of parts that joints connect, by their numbers.
+/// Returns the pairs of parts that joints connect, by their numbers.
 std::set<std::pair<int, int>> joined_pairs(const Model& model) {
   std::set<std::pair<int, int>> pairs;
   for (const JointModel& joint : model.joints())
@@ -35,8 +35,8 @@ std::set<std::pair<int, int>> joined_pairs(const Model& model) {
   return pairs;
 }
 
-/// Returns the deepest overlap of the surfaces of each joined pair, m; positive. simulation: one in which
-/// joined parts may touch. state, t (s): of the snowman.
+/// Returns the deepest overlap of the surfaces of each joined pair, m; positive. simulation: a simulation in
+/// which joined parts may touch. state: state of the snowman; t: its time, s.
 std::map<std::pair<int, int>, double> overlaps_of_joined(const Simulation& simulation, const State& state,
                                                          double t) {
   std::map<std::pair<int, int>, double> deepest;
@@ -62,9 +62,9 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
   Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
   const Model& model = simulation.model();
 
-  // Twelve point-to-point joints between parts hold it. The drives of three parameters of the base move it;
-  // springs in the joints of hat, nose and arms hold the orientations of these parts. There is no other
-  // spring, force or torque, and no prescribed motion.
+  // Twelve point-to-point joints connect the parts. The drives of three parameters of the base move the
+  // snowman; springs in the joints of hat, nose and arms keep the orientations of these parts. There is no
+  // other spring, force or torque, and no prescribed motion.
   REQUIRE(model.joints().size() == 12);
   for (const JointModel& joint : model.joints()) {
     CHECK(joint.joint->type() == std::string("ball"));
@@ -89,8 +89,9 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
     CHECK(part.n_s > 0);
   }
 
-  // Assembly: parts that no joint connects do not overlap. Joined parts overlap where they sit in each other,
-  // as a hat on a head, and are never deeper or nearer by more than 1 mm on their way there.
+  // Assembly: parts that no joint connects do not overlap. Joined parts overlap in their final positions,
+  // like the hat and the head. During the assembly, their overlap exceeds the final overlap by at most 1 mm,
+  // and their distance is at most 1 mm less than the final distance.
   const auto touching = read_scene(std::string(PLIANT_SCENES) + "/snowman.json", {}, diagnostics);
   for (const auto& [a, b] : joined_pairs(model)) {
     ContactPair pair;
@@ -126,7 +127,7 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
   for (const JointMode mode : simulation.state().joints) CHECK(mode == JointMode::closed);
   CHECK(simulation.contact()->contacts().empty());
 
-  // It drops and then hops: at least six flights, along the path y = 0.35 sin(2.618 x) to x = 2.4.
+  // The snowman drops and then hops: at least six flights, along the path y = 0.35 sin(2.618 x) to x = 2.4.
   int hops = 0;
   double path_error = 0, largest_tilt = 0, since = -1, airborne = 0;
   while (simulation.time() < scene->end - 0.5 * scene->step) {
@@ -148,7 +149,7 @@ TEST_CASE("the snowman assembles itself by twelve point joints and hops along it
   CHECK(airborne >= 2);
   CHECK(path_error <= 0.1);
   CHECK(largest_tilt <= 0.25);
-  // It stands upright and still at the end of the path.
+  // The snowman stands upright and still at the end of the path.
   CHECK(std::abs(position(simulation, 0)[0] - 2.4) <= 0.05);
   CHECK(tilt(simulation) <= 0.01);
   CHECK(simulation.state().v.segment<3>(model.parts()[0].v0).norm() <= 0.01);

@@ -1,6 +1,6 @@
 // The scenes with contact run to their end with their own step. After each step no overlap exceeds a
 // thousandth of the size of the smaller part. Joints that have closed stay closed in every impact. The scenes
-// that show figures of the paper move as described there.
+// that show figures of the paper move as in these figures.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -34,12 +34,13 @@ using pliant::VecX;
 
 namespace {
 
+/// Names of the scenes with contact in scenes/: rigid parts, soft parts, and parts on joints.
 const std::vector<std::string> kRigid{"bowl", "cradle", "dominoes", "roly_poly", "slope", "tower"},
     kSoft{"balloons", "springboard"}, kJointed{"dragonfly", "snowman"};
 
 /// Runs a scene to its end, and checks the overlaps after every step. after_step: called with the simulation
 /// after every step. Returns the number of times at which a contact starts after 50 ms without any contact;
-/// the first contact always counts.
+/// the first contact is always counted.
 template <class AfterStep>
 int run_file(const std::string& file, const std::vector<std::string>& overrides, AfterStep&& after_step) {
   CAPTURE(file);
@@ -190,10 +191,10 @@ TEST_CASE("balloons swing, collide, deform and come to rest without deep overlap
   CHECK(dent > 0.01);  // m; the radius is 0.1 m
   CHECK(kinetic < 1e-3 * max_kinetic);
   CHECK(fastest < 0.025);  // m/s, during the last second; initially 1.5 m/s
-  // Inelastic contact never books a gain beyond the error of the method.
+  // Inelastic contact adds no energy beyond the error of the method.
   CAPTURE(contact_gain, error);
   CHECK(contact_gain <= error);
-  CHECK(error <= 0.1 * max_kinetic);  // of the first-order method
+  CHECK(error <= 0.1 * max_kinetic);  // the method is of first order
 }
 
 TEST_CASE("the springboard throws up the ball on its end, and all parts deform", "[contact][long]") {
@@ -259,11 +260,11 @@ TEST_CASE(
   }
   CHECK(before.z() > take_off.z() + 0.2);  // the air on its wings drives the dragonfly up and ahead
   CHECK(before.x() > take_off.x() + 0.2);
-  CHECK(std::abs(before.y()) < 0.3);  // the controller holds its course
+  CHECK(std::abs(before.y()) < 0.3);  // the controller keeps its course
   CHECK(after_impact.largest > before_impact.largest + 0.1);
   CHECK(dent_after > 2 * dent_before);
   CHECK(max_speed > 0.5);
-  CHECK(most_in_a_step <= 80);  // a wing that stays at the plane is not located again and again in a step
+  CHECK(most_in_a_step <= 80);  // impacts of a wing that stays at the plane are not located again in the step
 }
 
 TEST_CASE("closed joints of the dragonfly and the snowman stay closed in every impact",

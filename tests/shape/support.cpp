@@ -1,5 +1,5 @@
-// Laws of the support functions of all shapes: the point is on the surface, no point of the solid is farther
-// in the direction, and the value of the support function has the point as its gradient.
+// Laws of the support functions of all shapes. The support point is on the surface, and no point of the solid
+// is farther in the given direction. The gradient of the support function is the support point.
 #include "catch.h"
 
 #include <cmath>
@@ -30,7 +30,8 @@ ShapeVec<Shape, double> draw_parameters(Draws& draws, int trial) {
   return a;
 }
 
-/// Returns a direction; every fourth one is in a coordinate plane, every eighth one is an axis.
+/// Returns a direction. Every fourth direction is in a coordinate plane, every eighth direction along an
+/// axis.
 Vec3<double> direction(Draws& draws, int i) {
   Vec3<double> m = draws.vector(1);
   if (i % 4 == 0) m[draws.integer(0, 2)] = 0;
@@ -38,7 +39,7 @@ Vec3<double> direction(Draws& draws, int i) {
   return m.normalized();
 }
 
-/// Returns the support point of a whole shape over the scalar T: of the piece whose point is farthest.
+/// Returns the support point of a shape in the direction m: the farthest of the support points of its pieces.
 template <class Shape, class T>
 Vec3<T> support(const Vec3<T>& m, const ShapeVec<Shape, T>& a) {
   Vec3<T> best = Shape::template support<T>(m, a, 0);
@@ -145,7 +146,7 @@ TEMPLATE_LIST_TEST_CASE("the support point depends on the direction only, and it
       negative.note(-e.dot(slope * e) / (slope.norm() + 1e-300));
     }
   }
-  CHECK(of_length < 1e-9);  // m is not exactly parallel to its multiple, and flat regions amplify that
+  CHECK(of_length < 1e-9);  // flat regions amplify the rounding errors of the multiple of m
   CHECK(asymmetric < 1e-7);
   CHECK(negative < 1e-7);
 }

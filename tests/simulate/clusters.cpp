@@ -1,4 +1,5 @@
-// Clusters: each steps alone, with the same bits alone and beside others; bodies that meet join.
+// Clusters of bodies step separately. A cluster has the same bits alone and beside other clusters. Bodies
+// that meet join one cluster.
 #include "catch.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ void add_falling_balls(MultiBody& body, int n, double height = 0.15) {
     ball(body, "ball" + std::to_string(i), {2.0 + i, 3, height + 0.03 * i}, {0.1 * i, 0, 0});
 }
 
-/// Returns the clusters without those of a single part.
+/// Returns the clusters of more than one part.
 std::vector<std::vector<int>> groups(const Simulation& simulation) {
   std::vector<std::vector<int>> groups = simulation.clusters()->parts();
   groups.erase(
@@ -162,8 +163,8 @@ TEST_CASE("impact times are found for any number of bodies", "[clusters]") {
   }
 }
 
-TEST_CASE("bodies that meet against the prediction join one cluster", "[clusters]") {
-  // A strong spring pulls one ball through the place of another within an interval: both start at rest.
+TEST_CASE("bodies that meet although they were predicted not to meet join one cluster", "[clusters]") {
+  // Both balls start at rest. Within an interval, a strong spring pulls the driver to the target.
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -172,14 +173,15 @@ TEST_CASE("bodies that meet against the prediction join one cluster", "[clusters
   Part& driver = ball(body, "driver", {0, 0, 0});
   ball(body, "target", {0.5, 0, 0});
   ball(body, "far", {9, 9, 9});
-  add_falling_balls(body, 7);  // at rest, because there is no gravity, but for the horizontal velocities
+  add_falling_balls(body, 7);  // without gravity, they keep their horizontal velocities
   body.spring("pull", point(driver, 0, 0, 0), world(0.6, 0, 0), 1e3);
   Simulation simulation(body, "auto", 1, 1e-8);
   simulation.step_up_to(0.25);
   CHECK(simulation.time() == 0.25);
   CHECK(groups(simulation) == std::vector<std::vector<int>>{{0, 1}});
   const double mass = simulation.model().parts()[0].part->total_mass(), rate = std::sqrt(1e3 / mass);
-  // The driver meets the target at x = 0.3 m, halfway to the anchor of the spring, and both change places.
+  // The driver meets the target at x = 0.3 m, halfway to the anchor of the spring, and they exchange their
+  // velocities.
   const double speed = 0.6 * rate * std::sin(std::acos(0.5));
   CHECK(simulation.step_counters().impacts >= 1);
   CHECK(std::abs(coordinates(simulation, "target")[7] - speed) < 1e-6 * speed);
@@ -239,10 +241,10 @@ TEST_CASE("sleeping clusters are not simulated, and wake when a body comes", "[c
   add_falling_balls(body, 7, 0.1);
   Simulation simulation(body, "auto", 1, 1e-4);
   advance_to(simulation, 0.5);
-  // The seven balls of the row roll; its numbers are 3 to 9.
+  // Part 2 is the visitor, which rolls. Parts 3 to 9 are the row of balls; all except the first roll.
   const std::vector<std::vector<int>> awake = simulation.clusters()->parts();
   CHECK(awake.front() == std::vector<int>{2});
-  CHECK(awake.size() == 7);  // the first ball of the row sleeps, too
+  CHECK(awake.size() == 7);  // the first ball of the row sleeps
   const StepCounters before = simulation.step_counters();
   advance_to(simulation, 0.6);
   const StepCounters& after = simulation.step_counters();
@@ -270,7 +272,7 @@ TEST_CASE("a sleeping body that is hit still rests on the fixed body below it", 
   body.contact.friction = 0.5;
   body.contact.sleep = Sleep{1e-3, 0.02};
   body.add<Primitive<Box>>("table").rest({{"a1", 5}, {"a2", 1}, {"a3", 0.1}}).place({0, 0, -0.1}).fix();
-  for (const int i : {0, 1})  // they sleep one by one
+  for (const int i : {0, 1})  // the boxes do not touch, so that each sleeps alone
     body.add<Primitive<Box>>("box" + std::to_string(i))
         .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
         .place({0.2001 * i, 0, 0.1});
@@ -309,7 +311,7 @@ TEST_CASE("a part of a state returns to the whole state unchanged", "[clusters]"
       State part = some.initial_state(), back = state;
       extract_state(simulation.model(), state, some, part);
       CHECK(part.contact_cache.size() == (numbers.size() == 2 ? 0 : state.contact_cache.size()));
-      // Clears what the part has, and puts it back.
+      // Clears the data that extract_state() has copied to `part`, and inserts them again.
       const PartModel& first = simulation.model().parts()[at(numbers[0])];
       back.q.segment(first.q0, part.q.size()).setZero();
       back.v.segment(first.v0, part.v.size()).setZero();
@@ -318,7 +320,7 @@ TEST_CASE("a part of a state returns to the whole state unchanged", "[clusters]"
       for (const int i : numbers) back.step_memory[at(i)] = {};
       std::fill(back.joints.begin(), back.joints.end(), JointMode::off);
       insert_state(some, part, simulation.model(), back);
-      if (numbers.size() == 4) back.joints = state.joints;  // the joint belongs to the others
+      if (numbers.size() == 4) back.joints = state.joints;  // the joint belongs to other parts
       CHECK(hash(back) == hash(state));
     }
   }

@@ -32,12 +32,14 @@ Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
   return part;
 }
 
-/// balance: absolute value of the balance of the ledger at the end of a run, relative to the energy at the
-/// start. momentum, angular: norms of the changes of P and L in the run, relative to the norms at the start.
-/// dissipated: work of damping, positive if energy is lost, relative to the energy at the start.
+/// Errors and losses of a run. balance: absolute value of the balance of the ledger at the end of a run,
+/// relative to the energy at the start. momentum, angular: norms of the changes of P and L in the run,
+/// relative to the norms at the start. dissipated: work of damping, positive if energy is lost, relative to
+/// the energy at the start.
 struct Drift {
   double balance, momentum, angular, dissipated;
 };
+/// Simulates rubber() for 0.3 s in free flight.
 Drift free_flight_drift(const std::string& law, double beta, int steps) {
   MultiBody body;
   rubber(body, law, beta);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMass = 2;  // kg
 
-/// Adds a ball at x = 0.3 m, on which a force along x acts that is the input "push", and a sensor of x.
+/// Adds a ball at x = 0.3 m, a force on the ball along x (the input "push"), and a sensor of x.
 void add_pushed_ball(MultiBody& body) {
   body.gravity.setZero();
   Part& ball = body.add<Primitive<Sphere>>("ball");

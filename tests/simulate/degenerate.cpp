@@ -1,4 +1,5 @@
-// Models in which nothing moves, or almost nothing acts: every method runs them, with and without contact.
+// Models in which nothing moves, or almost nothing acts. Every method must run these models, with and without
+// contact.
 #include "catch.h"
 
 #include <functional>
@@ -61,7 +62,7 @@ void check_run(const Case& model, const std::string& method, double tolerance, b
   CHECK(simulation.time() == Approx(0.1));
   CHECK(simulation.state().q.allFinite());
   CHECK(ledger.work.allFinite());
-  // In free fall the first-order method errs by the share h / t = 0.1 of the kinetic energy.
+  // In free fall the first-order method has an error of h / t = 0.1 of the kinetic energy.
   const double allowed = method == "semi_implicit_euler" ? 0.1 * ledger.kinetic : 0;
   CHECK(std::abs(ledger.balance) <= (1 + 1e-9) * allowed + 1e-12);
 }

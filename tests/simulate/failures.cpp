@@ -155,7 +155,7 @@ TEST_CASE("N72: a load that is not finite is named at a part whose local deforma
   }
 }
 
-TEST_CASE("a step far above the stable one fails, and the message names a stable step", "[failure]") {
+TEST_CASE("a step far above the stable step fails, and the message names a stable step", "[failure]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();

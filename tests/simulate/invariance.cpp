@@ -25,9 +25,12 @@ struct Units {
   double energy() const { return force() * length; }
 };
 
+/// Coordinates and velocities at the end of a run.
 struct Result {
   VecX<double> q, v;
 };
+/// Runs a scene of two parts in the given units. offset: distance of the scene from the origin along x, in
+/// metres.
 Result run_in(const Units& u, const char* method, double offset = 0) {
   MultiBody body;
   body.gravity = Vec3<double>(0.5, -1, -9.8) * (u.length / (u.time * u.time));
@@ -175,8 +178,8 @@ TEST_CASE("N64: the order of parts and unrelated parts do not change the motion"
 }
 
 TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]") {
-  // The reflection x -> -x changes the signs of c.x, of the twist, of the shear along x, of two components of
-  // omega and of two components of the quaternion. The direction phi of the bend becomes pi - phi.
+  // The reflection x -> -x changes the signs of c.x, the twist, the shear along x, two components of omega
+  // and two components of the quaternion. The direction phi of the bend becomes pi - phi.
   for (const char* method : kMethods) {
     Result results[2];
     for (int mirrored = 0; mirrored < 2; ++mirrored) {

@@ -16,7 +16,7 @@ using test::wave;
 
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kG = 9.81;  // m/s^2
 
 Part& ball(MultiBody& body, const char* name, double r) {
   return body.add(make_part(name, "sphere", {}, 1000)).rest({{"r", r}});

@@ -15,7 +15,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kSize = 0.1;
+constexpr double kSize = 0.1;  // semi-axes of all parts, m
 
 Part& box(MultiBody& body, const std::string& name, const Vec3<double>& at, double density = 1000) {
   Part& part = body.add(make_part(name, "box", {}, density));

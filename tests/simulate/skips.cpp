@@ -18,7 +18,7 @@ namespace {
 long allocations = 0;
 }  // namespace
 
-// Sanitizers replace malloc, so that allocations cannot be counted with them.
+// Sanitizers replace malloc, so that allocations cannot be counted in builds with sanitizers.
 #if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 constexpr bool kCounted = true;
 extern "C" void* __libc_malloc(std::size_t size);
@@ -257,7 +257,7 @@ TEST_CASE("a step with a parameter without inertia allocates no heap memory", "[
     MultiBody body;
     Part& part = test::add(body, "part", "box", {"bend"}, 1000);
     part.make_dynamic({"bend.direction"})
-        .velocity({0, 0, 0}, {1, 2, 3});  // without a bend, its direction has no effect
+        .velocity({0, 0, 0}, {1, 2, 3});  // the direction of a zero bend has no effect
     Simulation simulation(body, method);
     INFO(method);
     check_heap(simulation, 1e-3);

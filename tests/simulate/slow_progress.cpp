@@ -64,7 +64,7 @@ TEST_CASE("many steps in a tiny share of the interval are reported, with their n
   CHECK(std::abs(slow->advance - 1e-7) <= 1e-12);
 }
 
-TEST_CASE("a step that does not begin at the end of the last one begins a new count", "[failure]") {
+TEST_CASE("a step that does not begin at the end of the last step begins a new count", "[failure]") {
   ProgressWatch watch;
   double t = 0;
   CHECK_FALSE(add_steps(watch, t, 1e-10, 999, 1));
@@ -84,8 +84,8 @@ TEST_CASE("a step with very many evaluations is reported alone", "[failure]") {
 }
 
 TEST_CASE("impacts that follow each other ever faster are reported with the part and the time", "[failure]") {
-  // Without loss, the ball is faster after each impact between the floor and a plane that approaches it. The
-  // room between both planes is that of the ball after 1 s.
+  // The ball bounces without loss between the floor and a plane that approaches the floor, and is faster
+  // after each impact. After 1 s the distance of the two planes is the diameter of the ball.
   MultiBody body;
   body.gravity.setZero();
   add_ball(body, 0.6, 1, 1);

@@ -1,4 +1,4 @@
-// The predicted largest stable step is compared with the measured one.
+// The predicted largest stable step is compared with the measured largest stable step.
 #include "catch.h"
 
 #include <chrono>
@@ -35,6 +35,8 @@ bool bounded(const Build& build, const char* method, double h) {
   return true;
 }
 
+/// Checks that steps of 0.98 times the predicted limit are stable and that steps of 1.02 times this limit are
+/// not. what: name of the model.
 void check_limit(const std::string& what, const Build& build) {
   for (const char* method : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     MultiBody body;

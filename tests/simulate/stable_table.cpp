@@ -26,6 +26,7 @@ struct Scene {
   Build build;
 };
 
+/// Name and constants of a law of local deformation.
 struct Law {
   std::string name;
   std::vector<double> numbers;
@@ -69,8 +70,8 @@ Scene breathing(const std::string& shape, const std::string& parameter, double a
       }};
 }
 
-/// Adds a ball between two stretched springs without rest length, which pull at its poles. Its rotation is
-/// stiff, too, because the springs are long in comparison with the ball.
+/// Adds a ball between two stretched springs without rest length, which pull at its poles. The rotation of
+/// the ball is stiff, too, because the springs are long in comparison with the ball.
 void stretched(MultiBody& body, double reach, double stiffness, double damping) {
   auto& ball = body.add<Primitive<Sphere>>("ball", 1000);
   ball.rest({{"r", 0.1}});
@@ -225,6 +226,7 @@ bool bounded(const Build& build, const char* method, double h) {
   return true;
 }
 
+/// Checks the predicted step of each scene, see the top of this file.
 void check_table(const std::vector<Scene>& scenes) {
   for (const Scene& scene : scenes)
     for (const char* method : {"rk4", "semi_implicit_euler"}) {

@@ -19,6 +19,7 @@ using test::Draws;
 
 namespace {
 
+/// Returns the nodes in the given order (0, 1, ...), as a NodeOrder of solve/block_pattern.h.
 std::vector<int> given_order(const std::vector<int>& first, const std::vector<int>&) {
   std::vector<int> order(first.size() - 1);
   std::iota(order.begin(), order.end(), 0);
@@ -219,10 +220,12 @@ TEST_CASE("block factor: a tiny pivot is excluded if its row was given a larger 
   }
 }
 
-TEST_CASE("block factor: rows of three points that hold two bodies are solved to rounding at any tilt",
+TEST_CASE("block factor: the rows of three points that join two bodies are solved to rounding at any tilt",
           "[block_factor]") {
-  // Nine rows for six motions. Near tilt 0 the rows x and y of the second point hardly differ, and the
-  // elimination must exclude one of them, not the row z that their difference would fix.
+  // Two bodies have nine rows for six relative motions. Near tilt 0, after elimination of the first point,
+  // the rows x and y of the second point are nearly dependent. The elimination must exclude one of these two
+  // rows. If it used both, their small difference would take the place of row z, and row z would be excluded
+  // instead.
   for (const int interfaces : {1, 2, 3}) {  // 9, 18 and 27 rows: blocks, and the dense matrix
     for (const double tilt : {0.0, 1e-9, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 1e-3, 0.1, 1.0}) {
       CAPTURE(interfaces, tilt);

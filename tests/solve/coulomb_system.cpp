@@ -19,8 +19,8 @@ using test::Draws;
 
 namespace {
 
-/// Masses in a line. Each mass has `contacts` contacts with the next one, with normals close to the direction
-/// of the line. The first mass also has `contacts` contacts with a wall.
+/// Masses in a line. Each mass has `contacts` contacts with the next mass, with normals close to the
+/// direction of the line. The first mass also has `contacts` contacts with a wall.
 struct LineOfMasses {
   CoulombSystem system;
   std::vector<double> mass;
@@ -136,7 +136,7 @@ TEST_CASE("a mover that no impulse changes keeps its velocity", "[coulomb]") {
   CHECK(x[9] == 3);
 }
 
-TEST_CASE("final velocities are the initial ones plus the changes by the impulses", "[coulomb]") {
+TEST_CASE("final velocities are the initial velocities plus the changes by the impulses", "[coulomb]") {
   Draws draws(9);
   LineOfMasses line(12, 3, 2, 0.5, draws);
   const VecX<double> before = line.x;
@@ -285,8 +285,8 @@ TEST_CASE("a motion that no impulse can stop is reported in the residual", "[cou
 }
 
 TEST_CASE("a tolerance does not depend on the unit of a parameter at its limit", "[coulomb]") {
-  // A body with three contacts with a wall and a parameter at its limit. unit: the parameter in the test is
-  // `unit` times that of the first case.
+  // A body with three contacts with a wall and a parameter at its limit. unit: value of the parameter,
+  // divided by its value in the first case.
   Draws draws(12);
   for (int trial = 0; trial < 20; ++trial) {
     Eigen::Matrix<double, 7, 7> root;

@@ -1,4 +1,5 @@
-// Movers of equal and of mixed sizes are eliminated to the solution of the dense system.
+// The elimination of movers (groups of velocities, coulomb_system.h) of equal and of mixed sizes gives the
+// solution of the dense system.
 #include <pliant/solve/mover_system.h>
 
 #include <vector>

@@ -48,7 +48,7 @@ TEST_CASE("systems with a mass matrix are solved, for one column and for three")
   }
 }
 
-TEST_CASE("coordinates without inertia get zero solutions, and the others are solved without them") {
+TEST_CASE("coordinates without inertia get zero solutions, and other coordinates are solved without them") {
   Draws draws(6);
   const int n = 9;
   MatX<double> A = mass_matrix(draws, n);

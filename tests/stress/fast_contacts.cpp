@@ -63,6 +63,7 @@ void add_target(MultiBody& body, const std::string& at, const std::string& kind)
         .fix();
   if (at == "body") add_missile(body, "target", kind);
 }
+/// Initial position (m), velocity (m/s), and step of a shot.
 struct Shot {
   Vec3<double> from, velocity;
   double step, lengths_per_step;  ///< length of a step, s; displacement in a step / kLength
@@ -81,6 +82,7 @@ Shot draw(double min_lengths, double max_lengths, double speed, double offset, D
               (1.3 + draws.uniform(0, 1) * std::max(shot.lengths_per_step, 1.0)) * kLength * along;
   return shot;
 }
+/// Sets the place and the velocity of a shot, with a random orientation and angular velocity.
 void set_motion(const PartModel& m, const Shot& shot, Draws& draws, State& state) {
   const Eigen::Quaterniond R = Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1),
                                                   draws.uniform(-1, 1), draws.uniform(0.1, 1))
@@ -151,6 +153,8 @@ ShotResults shoot(const std::string& kind, const std::string& at, int shots, dou
   return results;
 }
 
+/// Shoots each kind at all targets and checks that no shot passes through, that at most a tenth is refused,
+/// and the overlaps.
 void shoot_all(const std::vector<std::string>& kinds, int shots, double max_lengths, Draws& draws) {
   for (const std::string& kind : kinds)
     for (const std::string at : kTargets) {

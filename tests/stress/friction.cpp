@@ -14,7 +14,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kG = 9.81, kMu = 0.4;
+constexpr double kG = 9.81, kMu = 0.4;  // m/s^2; coefficient of friction
 
 constexpr double kTilt = 0.6;  // inclination of the slope, rad
 
@@ -68,7 +68,7 @@ TEST_CASE("friction dissipates mu m g times the distance that a block slides", "
       check_friction(simulation, 0.5 * block.total_mass() * (2 * 2 + 0.5 * 0.5));
     }
     if (method != "semi_implicit_euler") continue;
-    // The distance has an error of first order, that of the method.
+    // The distance has an error of first order, like the method.
     CHECK(test::observed_order(errors) == Approx(1).margin(0.02));
     CHECK(errors.back() < 4e-3);
   }

@@ -24,7 +24,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kG = 9.81, kStep = 2e-3, kRadius = 0.1;
+constexpr double kG = 9.81, kStep = 2e-3, kRadius = 0.1;  // m/s^2, s, m
 
 /// Adds a square layer of across x across balls that touch their neighbours. first: position of the first
 /// ball, m.

@@ -17,7 +17,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kRadius = 0.1;
+constexpr double kRadius = 0.1;  // m
 
 Part& ball(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   return body.add(make_part(name, "ellipsoid", {}, 1000))
@@ -51,8 +51,8 @@ TEST_CASE("N58: a moving plane that appears in a ball does the work that the bal
         for (int i = 0; i < 600; ++i) {
           const double before = simulation.state().q[2];
           simulation.step(h);
-          // The separation adds at most one size of the ball (its radius) a second to the velocity after the
-          // impulse.
+          // The separation adds at most one size of the ball (its radius) per second to the velocity after
+          // the impulse.
           REQUIRE(simulation.state().q[2] - before <= h * (v + kRadius) * (1 + 1e-9));
           REQUIRE(simulation.state().v[2] <= v * (1 + 3e-11));
           REQUIRE(work(simulation.ledger(), Work::contact) <= energy * (1 + 3e-11));

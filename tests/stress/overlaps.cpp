@@ -22,7 +22,7 @@ using test::Draws;
 namespace {
 
 constexpr double kSize = 0.1;  // the largest semi-axis, m
-/// Overlapping parts are separated with this relative speed, in sizes (Part::size()) of the smaller part a
+/// Overlapping parts are separated with this relative speed, in sizes (Part::size()) of the smaller part per
 /// second.
 constexpr double kSeparationSpeed = 1;
 
@@ -42,7 +42,7 @@ Eigen::Quaterniond random_rotation(Draws& draws) {
       .normalized();
 }
 /// Simulates until the time `until` (s). Returns the largest relative speed of the centres of any two of the
-/// first `parts` parts, in sizes a second. Checks that the separation adds no velocity, and that no overlap
+/// first `parts` parts, in sizes per second. Checks that the separation adds no velocity, and that no overlap
 /// remains.
 double separation_speed(Simulation& simulation, double until, int parts) {
   const double h = 1e-2, size = simulation.model().parts()[0].part->size();
@@ -141,7 +141,7 @@ TEST_CASE("N54: separated parts push others out of their way within the step, al
   CHECK(simulation.ledger().kinetic == 0);
 }
 
-TEST_CASE("N54: deep overlaps are separated at one size a second, independently of motion elsewhere",
+TEST_CASE("N54: deep overlaps are separated at one size per second, independently of motion elsewhere",
           "[contact]") {
   MultiBody body;
   body.gravity.setZero();
@@ -259,7 +259,7 @@ TEST_CASE("N54: overlapping soft parts are separated also on a joint, on a floor
   CHECK(separation.overlap < 1e-3 * kSize);
 }
 
-TEST_CASE("N54: overlapping round parts are separated at a size a second, from any depth", "[contact]") {
+TEST_CASE("N54: overlapping round parts are separated at one size per second, from any depth", "[contact]") {
   Draws draws(41);
   for (const std::string shape : {"sphere", "ellipsoid"})
     for (const double distance : {0.14, 0.05, 1e-3, 1e-9, 0.0}) {

@@ -17,7 +17,7 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kStep = 2e-3;
+constexpr double kStep = 2e-3;  // s
 
 Part& cube(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   return test::add(body, name, "box", {}, 500).rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place(at);

@@ -40,7 +40,7 @@ def soft_part(name="a", **keys):
 
 
 def joints():
-    """Every kind of joint holds a box and joins a deformable part to it; the methods take turns."""
+    """For each kind of joint: a box on this joint to the world, and a deformable part on the box. Methods alternate."""
     kinds = ["ball", "rod", "string", "plane", "line", "hinge", "slider", "weld"]
     for kind, method in zip(kinds, itertools.cycle(METHODS)):
         between = kind if kind not in ("weld", "slider") else "ball"
@@ -82,7 +82,7 @@ def methods():
 
 
 def stiff_motion():
-    """Stiff, damped parameters in steps that are too long to follow them: the matrices of implicit methods."""
+    """Stiff, damped parameters in steps that are too long to resolve their motion: matrices of implicit methods."""
     stiff = {"a1": {"rest": 0.2, "stiffness": 3e8, "initial": 0.2001}, "a2": 0.15, "a3": 0.4,
              "twist.angle": {"rest": 0.1, "stiffness": 2e6, "initial_rate": 1}}
     for method in ("implicit_midpoint", "esdirk"):

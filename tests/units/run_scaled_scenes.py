@@ -1,10 +1,11 @@
 """Runs scenes in several systems of units and compares the recorded motions bit for bit.
 
-Arithmetic of floating point commutes with powers of two. A difference therefore means that a number with a unit, for
-example a smallest length in metres, is hidden in the program, or that numbers of different units are compared.
+Floating-point arithmetic commutes with scaling by powers of two. A difference therefore means that a number with a
+unit, for example a smallest length in metres, is hidden in the program, or that numbers of different units are
+compared.
 
-Without names, all scenes of cases.py run, and the shipped scenes for a short time. A name is one of cases.py, "seed7"
-for the scene 7 of fuzz/random_scene.py, or a scene file.
+Without names, all scenes of cases.py run, and the shipped scenes for a short time. A name is a scene of
+cases.py, "seed7" for the scene 7 of fuzz/random_scene.py, or a scene file.
 """
 
 import argparse
@@ -27,9 +28,9 @@ from scale_scene import Units, scale_scene, size_of_unit  # noqa: E402
 
 # Systems of units, with the largest difference of a number that is accepted, relative to the largest number of its
 # table. In the first two systems, none of the units of speed, acceleration, force, energy, momentum and pressure is 1.
-# An odd power of the mass changes the rounding of square roots of masses: Cholesky factors, inverse scales, and modes,
-# whose signs may then change. Contact at many nodes amplifies these roundings. Only scenes of cases.py without modes
-# run in that system.
+# The third system multiplies masses by an odd power of two. This changes the rounding of square roots of masses, and
+# therefore Cholesky factors, inverse scales and modes, whose signs may change. Contact at many nodes amplifies the
+# changes. Only scenes of cases.py without modes run in the third system.
 EXACT = [(Units(2.0**9, 2.0**-8, 2.0**4), 0), (Units(2.0**-6, 2.0**14, 2.0**-7), 0)]
 ODD_MASS = [(Units(1, 2.0**7, 1), 1e-10)]
 SINGLE = [(units, 0) for units in (Units(2.0**9, 1, 1), Units(2.0**-10, 1, 1), Units(1, 2.0**-8, 1),
@@ -37,7 +38,7 @@ SINGLE = [(units, 0) for units in (Units(2.0**9, 1, 1), Units(2.0**-10, 1, 1), U
 
 
 def scene_of(name, cases, end):
-    """The scene of a name; random and shipped scenes end at `end`, s, at the latest."""
+    """Returns the scene with a name. Random and shipped scenes end at the time `end` (s) at the latest."""
     if name in cases:
         return cases[name]
     if name.startswith("seed"):
@@ -58,7 +59,7 @@ def systems_of(name, cases):
 
 
 def columns_of(entries, layout, owner="*"):
-    """The names and units of the columns of a table, in order. entries: its entry in layout.json."""
+    """Returns the names and units of the columns of a table, in order. entries: entry of the table in layout.json."""
     columns = []
     for entry in entries:
         if "each" in entry:
@@ -92,7 +93,8 @@ class Run:
 
 
 def difference(plain, other, units, bound):
-    """Describes the largest difference of two runs, relative to the largest number of the table; None up to a bound."""
+    """Describes the largest difference of two runs, relative to the largest number of the table. Returns None if the
+    difference is at most `bound`."""
     if plain.code != other.code or plain.code is None:
         return f"exit codes {plain.code} and {other.code}: {plain.text[-300:]} | {other.text[-300:]}"
     largest, place, first = 0, None, None

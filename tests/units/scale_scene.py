@@ -71,7 +71,7 @@ OBJECTS = {
 # Keys for pictures, which are left out.
 PICTURES = {"$schema", "//", "coloring", "camera", "light", "ground", "color", "visible", "shown", "size",
             "every_part", "contacts"}
-# What an entry of a list is instead, by its type.
+# Units that replace those of OBJECTS for some types of an object.
 VARIANTS = {"slider": {"drive": "[sliding_drive]", "limits": "m"}}
 # The units of the quantities of the state that formulas read. All others keep their number: angles, sensors, exponents.
 SIGNALS = {**dict.fromkeys(["x", "y", "z", "length", "position"], "m"), "rate": "m/s",
@@ -110,7 +110,7 @@ def size_of_unit(unit, units):
 
 def size_of_signal(name, units):
     """The size of the unit of a quantity that a formula reads: t, NAME.QUANTITY, a sensor or input, or a quantity at
-    the points of a distributed force. Sensors must not have the names of the latter."""
+    the points of a distributed force. Sensors must not have the names in AT_POINTS."""
     owner, _, quantity = name.partition(".")
     if name == "t":
         return units.time

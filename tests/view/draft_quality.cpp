@@ -1,4 +1,4 @@
-// The quality of drafts follows the time of pictures.
+// The quality of drafts is adapted to the time that pictures take.
 #include <pliant/view/draft_quality.h>
 
 #include <catch2/catch.hpp>
@@ -7,9 +7,8 @@ namespace draft_quality_test {
 using namespace pliant;
 using Quality = WindowRenderer::Quality;
 
-/// Adds pictures whose time is proportional to the number of samples. full: time of a picture
-/// with one sample for each pixel, s.
-/// Returns the number of changes.
+/// Adds pictures whose time is proportional to the number of samples. full: time of a picture with one sample
+/// for each pixel, s. Returns the number of changes of the quality.
 int draw(DraftQuality& draft, double full, int pictures) {
   int changes = 0;
   for (int i = 0; i < pictures; ++i) {

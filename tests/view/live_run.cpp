@@ -79,7 +79,7 @@ TEST_CASE("a live run samples its tracks at the end of every interval, and again
   CHECK(again[0].time == 0);
 }
 
-TEST_CASE("a live run keeps real time, or is as fast as it can") {
+TEST_CASE("a live run keeps real time, or runs as fast as possible") {
   const std::unique_ptr<Scene> scene = ball_scene();
   LiveRun run(*scene);
   run.play();
@@ -89,13 +89,13 @@ TEST_CASE("a live run keeps real time, or is as fast as it can") {
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   const std::shared_ptr<const Snapshot> now = run.snapshot();
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  CHECK(now->state.time() <= wall + 0.05);  // never ahead; other processes may delay it
+  CHECK(now->state.time() <= wall + 0.05);  // the run is never ahead; other processes may delay it
   CHECK(now->state.time() > 0.2 * wall);
   run.set_max_speed(std::numeric_limits<double>::infinity());
   wait_until(run, [](const Snapshot& later) { return later.state.time() > 10; });
 }
 
-TEST_CASE("a live run that is late says by how much, and catches up at most a second") {
+TEST_CASE("a live run that is late reports its delay, and catches up at most a second") {
   const std::unique_ptr<Scene> scene = ball_scene();
   std::atomic<bool> slow = true;
   scene->body.force("slow", point(*scene->body.find("ball"), 0, 0),

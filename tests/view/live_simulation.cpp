@@ -1,5 +1,5 @@
 // Drags and changed gravity of a live simulation: the motion is that of the same springs in the library, and
-// the saved scene repeats it to the last bit.
+// the saved scene repeats the motion to the last bit.
 #include <pliant/view/live_simulation.h>
 
 #include <cstring>
@@ -57,6 +57,7 @@ std::string fallen_scene(const std::string& time, int boxes) {
          R"(], "contact": {"friction": 0.5, "sleep": {"speed": 0.01, "after": 0.1}, "planes": [{"name": "floor"}]}})";
 }
 
+/// Returns a scene of a soft ellipsoid without gravity, with these settings of time.
 std::string jelly_scene(const std::string& time) {
   return R"({"gravity": [0, 0, 0], "time": )" + time + R"(,
   "parts": [{"name": "jelly", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.2}, "density": 500,
@@ -178,7 +179,7 @@ TEST_CASE("a dragged point follows the mouse in the next interval") {
   CHECK((held(moved) - held(still)).x() > 1e-3);
 }
 
-TEST_CASE("a jump of the mouse moves the hand at a bounded speed, and it arrives") {
+TEST_CASE("after a jump of the mouse, the end of the drag moves to the mouse at a bounded speed") {
   const std::unique_ptr<Scene> scene = parse(kBar);
   LiveSimulation live(*scene);
   const Part& bar = *scene->body.find("bar");
@@ -248,7 +249,7 @@ TEST_CASE("changed gravity is repeated to the last bit") {
 }
 
 TEST_CASE(
-    "gravity that is added to a changing one is repeated to the last bit, also by a scene that was saved") {
+    "gravity that is added to changing gravity is repeated to the last bit, also by a scene that was saved") {
   const std::string start = R"({"gravity": )", end = R"(, "time": {"tolerance": 1e-6}, "parts": [
     {"name": "egg", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}}]})";
   const std::string by_components = R"json([0, "sin(t)", {"t": [0, 1], "y": [0, -9]}])json",
@@ -274,7 +275,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("changed stiffnesses of drives of parameters are repeated to the last bit, and close the balance") {
+TEST_CASE(
+    "changed stiffnesses of drives of parameters are repeated to the last bit, and the ledger balances") {
   const std::string part = R"({"name": "bar", "shape": "box", "deformations": ["bend"],
     "parameters": {"a1": 0.1, "a2": 0.1, "a3": 0.4, "bend.angle": {"rest": 0, "initial": 0.2, "drive": )";
   for (const char* drive :
@@ -289,7 +291,7 @@ TEST_CASE("changed stiffnesses of drives of parameters are repeated to the last 
                      if (k == 10) live.set_drive_stiffness(0, 900);
                      if (k == 25) live.set_drive_stiffness(0, 100);
                      CHECK_THROWS_WITH(live.set_drive_stiffness(0, -1), test::has_text("bar.bend.angle"));
-                     CHECK(std::abs(live.ledger().balance) <= 1e-6 * 6);  // of 6 J
+                     CHECK(std::abs(live.ledger().balance) <= 1e-6 * 6);  // the energy is 6 J
                    });
   }
   const std::unique_ptr<Scene> scene =
@@ -327,7 +329,7 @@ const char* const kSprung = R"({"time": {"tolerance": 1e-8},
     {"name": "cord", "from": {"part": "box", "at": {"direction": [-1, 0, 0]}},
      "to": {"part": "egg", "at": {"direction": [1, 0, 0]}}, "stiffness": 300, "rest_length": 0.2}]})";
 
-TEST_CASE("changed stiffnesses are repeated to the last bit, and close the balance") {
+TEST_CASE("changed stiffnesses are repeated to the last bit, and the ledger balances") {
   for (const char* time : {R"({"tolerance": 1e-8})", R"({"step": 0.001, "integrator": "rk4"})"}) {
     std::string text = kSprung;
     text.replace(text.find(R"({"tolerance": 1e-8})"), std::string(R"({"tolerance": 1e-8})").size(), time);
@@ -373,7 +375,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("changed stiffnesses of parameters are repeated to the last bit, and close the balance") {
+TEST_CASE("changed stiffnesses of parameters are repeated to the last bit, and the ledger balances") {
   const auto change = [](LiveSimulation& live, int k) {
     REQUIRE(live.parameter_stiffnesses().size() == 1);
     CHECK(live.parameter_stiffnesses()[0].first == 300);
@@ -405,7 +407,7 @@ TEST_CASE("changed stiffnesses of parameters are repeated to the last bit, and c
   }
 }
 
-TEST_CASE("a changed stiffness of a parameter moves it as the sum of both stiffnesses does") {
+TEST_CASE("a parameter with a changed stiffness moves as with the sum of both stiffnesses") {
   const auto [changed, text] =
       GENERATE(std::pair(1500.0, "1500"), std::pair(40.0, "40"), std::pair(0.0, "0"));
   std::string stiff = kBar, soft = kBar;
@@ -504,7 +506,7 @@ TEST_CASE("parameters with a stiffness matrix can be made stiffer only, and are 
                });
 }
 
-TEST_CASE("changed local stiffnesses are repeated to the last bit, and close the balance") {
+TEST_CASE("changed local stiffnesses are repeated to the last bit, and the ledger balances") {
   const auto change = [](LiveSimulation& live, int k) {
     REQUIRE(live.local_stiffnesses().size() == 1);
     CHECK(live.local_stiffnesses()[0].most > 1.5);

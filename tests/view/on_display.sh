@@ -1,7 +1,7 @@
 #!/bin/sh
 # on_display.sh COMMAND ...: runs a command on a virtual display of its own and returns its exit code. The X server itself
 # chooses a free number, so that displays of tests that run at the same time do not collide. Without -noreset the server
-# would start anew each time its last client leaves, and would then refuse a client that is just connecting.
+# would restart each time its last client disconnects, and would then refuse a client that is just connecting.
 folder=$(mktemp -d) || exit 1
 mkfifo "$folder/number" || exit 1
 Xvfb -displayfd 3 -noreset -nolisten tcp -screen 0 1280x800x24 3>"$folder/number" 2>"$folder/messages" &

@@ -76,8 +76,8 @@ TEST_CASE("the material point under the mouse is where the mesh was hit") {
       const std::optional<Point> point = points.at({i, hit->triangle, hit->weights, hit->position});
       REQUIRE(point);
       CHECK(point->part->name() == shown[i].name);
-      // The mesh differs from the surface by the height of its triangles, and the patch of the jelly is a
-      // mean.
+      // The mesh differs from the surface by the height of its triangles, and a point of the jelly is
+      // the mean over a patch.
       Point exact = *point;
       exact.patch = 0;
       CHECK((PlacedPoint(model, exact).at(state) - inside).norm() <= 0.06 * size);

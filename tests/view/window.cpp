@@ -1,5 +1,5 @@
-// The window on a virtual display: scripts and a real mouse of the display. A drag of a named part moves its
-// point by what the library gives for the saved spring.
+// The window on a virtual display: scripts and a real mouse of the display. A dragged point moves as in a
+// simulation with the saved spring.
 #include <cstdlib>
 #include <sstream>
 
@@ -109,8 +109,9 @@ Vec3<double> replayed_point(const std::filesystem::path& file, double time, std:
 }  // namespace
 
 // With sanitizers, libraries of the display leak memory from modules that are already unloaded, so that no
-// suppression applies. The tests of the window are therefore long ones, which runs with sanitizers leave out.
-TEST_CASE("a scripted drag moves the point of a part by what the library gives for its spring", "[long]") {
+// suppression applies. The tests of the window therefore have the tag [long], and runs with sanitizers
+// exclude them.
+TEST_CASE("a scripted drag moves the point of a part as the library does with the saved spring", "[long]") {
   if (no_display()) return;
   const NewFolder folder;
   set_bytes(folder / "scene.json", kScene);
@@ -197,7 +198,7 @@ TEST_CASE("sliders of the panel change gravity, a rest value and stiffnesses, an
   const NewFolder folder;
   set_bytes(folder / "scene.json", kSpringScene);
   // A click on the ball selects it. Then the panel has sliders for its radius, the stiffness of the radius
-  // and its spring. Each slider is moved to the right. The places are those of a photograph of the window.
+  // and its spring. Each slider is moved to the right. The positions were read from a picture of the window.
   set_bytes(folder / "mouse.sh", with_mouse(R"(
 move() {  # X Y X_END: the mouse moves with its button held
   xdotool mousemove --window "$window" "$1" "$2"; sleep 0.3

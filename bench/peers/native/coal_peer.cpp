@@ -4,9 +4,9 @@
 //
 // POSES.csv: pair_poses.csv of pair_bench. Prints for each pair and band: the pair, the band, the nanoseconds
 // of a cold and of a warm query, and the largest difference of the gap from that of pliant, m. Queries are
-// signed distances with the default tolerances. Cold queries start GJK with the default guess, in an order
-// in which each pose differs from the last one. Warm queries visit consecutive poses and start with the
-// guess that the last query returned.
+// signed distances with the default tolerances. Cold queries start GJK with the default guess, and successive
+// cold queries are at poses of different sequences. Warm queries are at successive poses of a sequence, and
+// start GJK with the guess that the last query returned.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -72,7 +72,7 @@ std::vector<Group> read(const std::string& path) {
   return groups;
 }
 
-/// The queries in an order in which each one belongs to another sequence than the last one.
+/// Returns the queries in an order in which successive queries belong to different sequences.
 std::vector<Query> shuffled(const std::vector<Query>& queries) {
   const std::size_t sequences = static_cast<std::size_t>(queries.back().sequence) + 1,
                     poses = queries.size() / sequences;
@@ -82,7 +82,7 @@ std::vector<Query> shuffled(const std::vector<Query>& queries) {
   return result;
 }
 
-/// The least time of a query in nanoseconds.
+/// Returns the least time of a query over the batches, in nanoseconds.
 double nanoseconds(const coal::ComputeDistance& distance, const std::vector<Query>& queries, bool warm) {
   coal::DistanceRequest request;
   request.gjk_initial_guess = warm ? coal::GJKInitialGuess::CachedGuess : coal::GJKInitialGuess::DefaultGuess;

@@ -1,9 +1,9 @@
-// Pinocchio's forward dynamics in explicit Runge-Kutta loops.
+// Explicit Runge-Kutta methods with the forward dynamics of Pinocchio.
 //
 //   pinocchio_peer PROBLEM TABLEAU fixed STEPS | pinocchio_peer PROBLEM TABLEAU adaptive TOLERANCE
 //
-// PROBLEM: file of native_peer.py; TABLEAU: file of pinocchio_peer.py. Accelerations of trees are computed by
-// the articulated-body algorithm, those of systems with loops by constraintDynamics.
+// PROBLEM: file that native_peer.py writes; TABLEAU: file that pinocchio_peer.py writes. The articulated-body
+// algorithm computes accelerations of trees, and constraintDynamics those of systems with loops.
 #include <cmath>
 #include <cstring>
 #include <exception>

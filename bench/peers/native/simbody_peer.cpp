@@ -1,8 +1,8 @@
 // Simbody with its error-controlled integrators: ball mobilizers in a tree and ball constraints for loops, or
 // free bodies with ball constraints for all joints.
 //
-//   simbody_peer PROBLEM tree|free INTEGRATOR ACCURACY     PROBLEM: file of native_peer.py; ACCURACY:
-//   Simbody's error tolerance of a step
+//   simbody_peer PROBLEM tree|free INTEGRATOR ACCURACY     PROBLEM: file that native_peer.py writes;
+//   ACCURACY: Simbody's error tolerance of a step
 #include <cstring>
 #include <exception>
 #include <memory>

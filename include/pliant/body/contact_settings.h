@@ -61,8 +61,8 @@ struct ContactGroup {
 };
 
 /// Contact settings of two named parts, planes, obstacles or groups. A group paired with itself gives the
-/// settings of contacts among its members. If several pairs match, the one with the fewest groups applies,
-/// and among these the last.
+/// settings of contacts among its members. If several pairs match, the pair with the fewest groups applies;
+/// among pairs with equally few groups, the last pair applies.
 struct ContactPair {
   std::string a, b;
   bool touch = true;                                ///< false: a and b pass through each other
@@ -72,11 +72,11 @@ struct ContactPair {
 /// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
 /// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
 /// searched. A sleeping part wakes when an awake part touches it, or when a cause of its motion changes. A
-/// cause changes when a joint, spring, plane or obstacle switches, or when the prescribed end of a spring or
-/// joint, a load, a rest value, the factor of local stiffness or gravity changes. A part stays awake while a
-/// cause changes, or while it touches a part or plane with prescribed motion. Loads that read the state, and
-/// forces by a function (PointForce::custom), change at all times. A distributed force that reads only its
-/// own points does not change.
+/// cause changes when a joint, spring, plane or obstacle is switched on or off. A cause also changes when the
+/// prescribed end of a spring or joint moves, and when a load, a rest value, the factor of local stiffness or
+/// gravity changes. A part stays awake while a cause changes, or while it touches a part or plane with
+/// prescribed motion. Loads that read the state, and forces by a function (PointForce::custom), are regarded
+/// as changing at all times. A distributed force that reads only its own points is regarded as constant.
 struct Sleep {
   double speed = 0;    ///< a part is at rest while all its points are slower than this, m/s; must be > 0
   double after = 0.5;  ///< time at rest after which a part falls asleep, s; must be > 0
@@ -84,7 +84,7 @@ struct Sleep {
 
 /// How impacts that happen at the same time are resolved.
 enum class ImpactOrder {
-  simultaneous,  ///< Newton's law holds at all contacts at once
+  simultaneous,  ///< Newton's law of impact holds at all contacts at once
   sequential     ///< impacts of two bodies follow each other, the fastest first (contact/impact_sequence.h)
 };
 
@@ -93,15 +93,15 @@ inline constexpr double kMinContactTolerance = 1e-14, kMaxContactTolerance = 0.1
 
 struct ContactSettings {
   bool active = false;        ///< whether there is any contact
-  bool between_parts = true;  ///< whether parts touch each other, or planes and obstacles only
+  bool between_parts = true;  ///< whether parts touch each other; false: only planes and obstacles
   double friction = 0.5;      ///< Coulomb's coefficient mu
-  double restitution = 0;     ///< Newton's coefficient e: speed after an impact over speed before
+  double restitution = 0;     ///< Newton's coefficient e: speed after an impact / speed before the impact
   ImpactOrder impacts = ImpactOrder::simultaneous;
   /// Largest violation of the laws of contact, as a share of a reference speed. For a set of bodies that
   /// touch each other, the reference is the largest speed that contact impulses stop (contact/README.md). At
-  /// rest this is the speed that gravity gives a body in a step. At an impact it is 1 + e times the speed of
-  /// the impact. The relative error of the impulses may be larger, for instance in tall stacks. If no
-  /// tolerance is given, only rounding errors are allowed.
+  /// rest this reference is the speed that gravity gives a body in a step. At an impact the reference is 1 +
+  /// e times the speed of the impact. The relative error of the impulses may be larger, for instance in tall
+  /// stacks. If no tolerance is given, only rounding errors are allowed.
   std::optional<double> tolerance{};
   /// Pairs with settings of their own. Two parts with a common joint touch only if a pair names both.
   std::vector<ContactPair> pairs;
@@ -113,8 +113,9 @@ struct ContactSettings {
   /// the error: with many parts, with parts that deform locally, or with point forces. Must be > 0. Larger
   /// tolerances allow longer steps (contact/longest_contact_step.h).
   double longest_step = 2e-3;
-  /// In a run to a tolerance, bodies that may meet within an interval of this length, s, step together, apart
-  /// from all others (simulate/clusters.h). Intervals end at the multiples of this length. Must be > 0.
+  /// Length of an interval, s. In a run to a tolerance, bodies that may meet within an interval step together
+  /// in a cluster, independently of other bodies (simulate/clusters.h). Intervals end at the multiples of
+  /// this length. Must be > 0.
   double interval = 1.0 / 128;
 };
 

@@ -52,7 +52,7 @@ class Dynamics {
   // The time t (s), q, v and the modes are separate arguments, because the stages of a method of integration
   // evaluate at coordinates and velocities that belong to no State.
 
-  /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work except those of rigid
+  /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work except the fields of rigid
   /// islands. modes: the step length, the modes of limits and joints, and the sleeping parts, whose
   /// accelerations and powers are zero. rank: the rule that decides which rows of joints are dependent
   /// (solve/pivots.h). A parameter at a limit with a rate of exactly 0 can only move into its range. A
@@ -87,8 +87,8 @@ class Dynamics {
   /// parameters that limits push and the set of strings that pull are constant in this derivative. Throws
   /// std::logic_error if a part deforms locally.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
-  /// Returns the same derivative, from an existing evaluation. work: as accelerations(t, q, v, ...) left it;
-  /// dual_work: scratch storage, kept from call to call; its contents are ignored.
+  /// Returns this derivative of v_dot from an existing evaluation. work: as accelerations(t, q, v, ...) left
+  /// it; dual_work: scratch storage, kept from call to call; its contents are ignored.
   VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const StateDirection& along,
                    const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
   /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion, where o is the
@@ -98,8 +98,8 @@ class Dynamics {
   /// t (s). parts: numbers of parts that have coordinates.
   void evaluate_masses(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
-  /// Computes frame, attachment points and mass matrix of a part that has coordinates at time t (s), without
-  /// the factor.
+  /// Computes frame, attachment points and mass matrix of a part at time t (s), without the factor of the
+  /// mass matrix. The part must have coordinates.
   void evaluate_frame(double t, const VecX<double>& q, const VecX<double>& v, int part,
                       Workspace<double>& work) const;
   /// Returns the kinetic and potential energy of some parts, and of all springs and drives that act on one of

@@ -49,8 +49,8 @@ PLIANT_INLINE FramedPoint framed(const Point& at, const Mat3<double>& axes) {
   std::vector<Material<double>> around = detail::points_around(at.material, part);
   around.push_back(at.material);
   const Eigen::Matrix3Xd x = part.s(around, part.parameters().rest());
-  // Choose the three points whose unit directions span the largest volume. A later choice replaces an earlier
-  // one only if its volume is more than 5 % larger.
+  // Choose the three points whose unit directions from x_0 span the largest volume. A later choice replaces
+  // an earlier choice only if its volume is more than 5 % larger.
   const int n = static_cast<int>(x.cols()) - 1;
   auto difference = [&](int i) -> Vec3<double> { return x.col(i) - x.col(n); };
   double best = 1e-3;

@@ -24,7 +24,7 @@ namespace pliant {
 /// share this object, which then stays in the processor's cache.
 struct RigidMass {
   /// constant: M (6 x 6), first moment and mass. floor: see SymmetricFactor. diagonal: whether factor and
-  /// inverse are those of the diagonal of M (Part::use_diagonal_mass).
+  /// inverse are computed from the diagonal of M only (Part::use_diagonal_mass).
   RigidMass(const Inertia<double>& constant, const VecX<double>& floor, bool diagonal);
 
   Inertia<double> inertia;              ///< M, first moment and mass
@@ -39,15 +39,15 @@ struct PartModel {
   int q0, v0;       ///< first entries in q and v; -1 for a part that is fixed or has a prescribed motion
   double size;      ///< Part::size(): largest half extent at rest, m
   int n_s;          ///< number of dynamic global parameters
-  int island = -1;  ///< number of its island; -1: no joints or no coordinates
-  int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none
-  int limit0;                      ///< first entry in State::at_limit
-  bool loaded = false;             ///< whether loads act on it, or read its state
-  bool actuated = false;           ///< whether a rest value of a dynamic parameter changes in time
-  const LocalDeformation* local;   ///< nullptr for a part without local deformation
+  int island = -1;  ///< number of the part's island; -1: no joints or no coordinates
+  int rigid_island = -1;          ///< number of the part's rigid island (constraint/rigid_island.h); -1: none
+  int limit0;                     ///< first entry in State::at_limit
+  bool loaded = false;            ///< whether loads act on the part, or read its state
+  bool actuated = false;          ///< whether a rest value of a dynamic parameter changes in time
+  const LocalDeformation* local;  ///< nullptr for a part without local deformation
   const PrescribedMotion* motion;  ///< nullptr for a part without prescribed motion
-  /// For a part that deforms locally: the points at which joints act, as weights among the nodes. Each point
-  /// appears once.
+  /// For a part that deforms locally: the points at which joints act, each as weights of the nodes. Each
+  /// point appears once.
   std::vector<NodeWeights> joint_points;
   std::vector<Material<double>> ports;  ///< attachment points: material points at which forces act
   double drag;                          ///< nu, 1/s
@@ -61,7 +61,7 @@ struct PartModel {
   std::vector<NodeWeights> node_weights;        ///< weights of each port, if the part deforms locally
   std::vector<int> port_place;                  ///< number of each port in `joint_points`; -1: none
   Eigen::Matrix3d R0;                           ///< orientation at time 0; constant for a fixed part
-  Part::Use use;                                ///< locks the part against changes
+  Part::Use use;                                ///< prevents changes of the part while the model exists
 
   /// Returns the rest values of the dynamic parameters at time t (s).
   VecMax<double> rest_at(double t) const {
@@ -86,9 +86,9 @@ struct PortRef {
 /// A signal of a formula, with its places in the model.
 struct SignalModel {
   const Signal* signal;
-  int part = -1;   ///< number of its part; -1: none
-  PortRef a, b;    ///< attachments of its points
-  int place = -1;  ///< number of its coordinate or sensor; -1: none
+  int part = -1;   ///< number of the signal's part; -1: none
+  PortRef a, b;    ///< attachments of the points of the signal
+  int place = -1;  ///< number of the coordinate or sensor that the signal reads; -1: none
 };
 /// A function of time and state, with its signals.
 struct FunctionModel {
@@ -97,7 +97,7 @@ struct FunctionModel {
 };
 struct CoordinateModel {
   const Joint* coordinate;
-  std::vector<PortRef> at;  ///< attachment of each of its points
+  std::vector<PortRef> at;  ///< attachment of each point of the coordinate
 };
 struct DriveModel {
   const Drive* drive;
@@ -114,20 +114,20 @@ struct SpringModel {
 struct ForceModel {
   const PointForce* force;
   PortRef at;
-  std::vector<FunctionModel> components;  ///< of the force, if it reads the state; else empty
+  std::vector<FunctionModel> components;  ///< components of a force that reads the state; else empty
 };
 struct TorqueModel {
   const Torque* torque;
   int part;
   int against;                            ///< part with the opposite torque; -1: none
-  std::vector<FunctionModel> components;  ///< of the torque, if it reads the state; else empty
+  std::vector<FunctionModel> components;  ///< components of a torque that reads the state; else empty
 };
 
 struct DistributedModel {
   const DistributedForce* force;
   int part;
-  int first_port;                        ///< number of its first port; its ports have consecutive numbers
-  std::array<FunctionModel, 3> density;  ///< of the force
+  int first_port;  ///< first port of the force; the numbers of its ports are consecutive
+  std::array<FunctionModel, 3> density;  ///< components of DistributedForce::density
   FunctionModel pressure;
   bool has_density = false;    ///< whether the density is not zero
   Eigen::Matrix3Xi triangles;  ///< on a surface: three ports each, counted from first_port
@@ -139,20 +139,20 @@ struct DistributedModel {
 struct JointSide {
   int part;
   int place;   ///< number of the part in its island
-  int offset;  ///< start of its C_q^T and M^-1 C_q^T, n_x x rows, in the flat arrays of the workspace
+  int offset;  ///< start of the side's C_q^T and M^-1 C_q^T, n_x x rows, in the flat arrays of the workspace
 };
 struct JointModel {
   const Joint* joint;
   int rows;
   int row;                  ///< first row in the rows of all joints
-  std::vector<PortRef> at;  ///< attachment of each of its points
+  std::vector<PortRef> at;  ///< attachment of each point of the joint
   std::vector<JointSide> sides;
-  int island, node;  ///< number of its island, and number of the joint in Island::joints (-1 for a string)
+  int island, node;  ///< number of the island, and place of the joint in Island::joints (-1 for a string)
   int island_row;    ///< first row in the rows of the island; -1 for a string
   double length;     ///< size of the smallest part with coordinates at the joint, m
-  bool driven;       ///< whether one of its points has a prescribed motion
-  /// For a joint between two points of one part: start of the C_q^T and M^-1 C_q^T that its first side alone
-  /// would have, in the flat arrays; else -1.
+  bool driven;       ///< whether a point of the joint has a prescribed motion
+  /// For a joint between two points of one part: start, in the flat arrays, of C_q^T and M^-1 C_q^T of the
+  /// first side of the joint alone; else -1.
   int first_offset = -1;
 };
 
@@ -171,17 +171,17 @@ struct Coupling {
 /// A set of parts that joints connect, and the system of these joints.
 struct Island {
   std::vector<int> parts;
-  std::vector<int> anchors;  ///< parts without coordinates at its joints
+  std::vector<int> anchors;  ///< parts without coordinates at the joints of the island
   std::vector<int> joints;   ///< joints that are equations, C = 0
   std::vector<int> strings;  ///< one-sided joints, C >= 0
-  bool loaded = false;       ///< whether loads act on any of its parts, or read their state
+  bool loaded = false;       ///< whether loads act on any part of the island, or read its state
   std::vector<int> first;    ///< first entry of each part in the vector of the velocities of the island
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< number of rows of `joints`
-  int rigid = -1;            ///< its number among the rigid islands; -1: none
+  int rigid = -1;            ///< number of the island among the rigid islands; -1: none
   bool augmented = false;    ///< whether the augmented matrix of Eq. (14) is factored, not the blocks of W_c
   bool uneven = false;       ///< whether masses differ so much that lambda needs iterative refinement
-  BlockPattern pattern;      ///< pattern of the blocks of W_c, if they are factored
+  BlockPattern pattern;      ///< pattern of the blocks of W_c, if these blocks are factored
   std::vector<Coupling> couplings;  ///< sorted by later_joint()
   long factor_values = 0;           ///< number of values in the factor
 };
@@ -191,9 +191,10 @@ class Model {
   /// Prepares all parts. Throws std::invalid_argument, naming the part, joint, load or setting at fault.
   /// `body` must outlive the model.
   explicit Model(const MultiBody& body);
-  /// Prepares some parts of a body, with their joints and loads. parts: their numbers in the body,
-  /// increasing. The model contains the joints and loads that are on at least one of these parts that has
-  /// coordinates. All parts at these joints and loads, or read by these loads, must be among these parts.
+  /// Prepares some parts of a body, with their joints and loads. parts: numbers of the parts in the body,
+  /// increasing. The model contains the joints and loads that act on at least one of these parts with
+  /// coordinates. `parts` must include all parts on which these joints and loads act, and all parts whose
+  /// state these loads read.
   Model(const MultiBody& body, std::vector<int> parts);
 
   const MultiBody& body() const { return *body_; }
@@ -213,10 +214,11 @@ class Model {
   /// signals are all in this model.
   const std::vector<FunctionModel>& sensors() const { return sensors_; }
   const std::vector<int>& sensor_numbers() const { return sensor_numbers_; }
-  /// Pairs of parts that a load connects: it acts on both, or acts on one and reads the state of the other.
+  /// Pairs of parts that a load connects: the load acts on both parts, or acts on one part and reads the
+  /// state of the other part.
   const std::vector<std::pair<int, int>>& load_connections() const { return load_connections_; }
-  /// Appends the numbers of the parts that a function or signal reads, also by sensors and coordinates. The
-  /// numbers may be repeated; -1 stands for the world.
+  /// Appends the numbers of the parts whose state a function or signal reads, also through sensors and
+  /// coordinates. The numbers may be repeated; -1 stands for the world.
   void append_parts(const FunctionModel& function, std::vector<int>& parts) const;
   void append_parts(const SignalModel& signal, std::vector<int>& parts) const;
   /// Numbers of the parts that loads (springs, forces, torques, distributed forces, drives) act on or read.
@@ -233,15 +235,15 @@ class Model {
   const std::vector<int>& driven_joints() const { return driven_joints_; }
   /// Whether next_kink() can find a kink.
   bool may_have_kinks() const;
-  /// Returns the first kink later than `after` and no later than `until` (s): of the prescribed motion of an
-  /// end of a joint or spring while it acts, a time at which a spring switches, or a multiple of
-  /// 1 / MultiBody::stop_rate. At a kink a position, its rate or a force jumps. If there is no kink, the time
-  /// of the result is infinite.
+  /// Returns the first kink later than `after` and no later than `until` (s). At a kink a position, its rate
+  /// or a force jumps. Kinks are the kinks of the prescribed motion of the ends of joints and springs while
+  /// these act, the times at which springs are switched on or off, and the multiples of 1 /
+  /// MultiBody::stop_rate. If there is no kink, the time of the result is infinite.
   Kink next_kink(double after, double until) const;
   /// Returns the first kink of one joint, or of one spring.
   Kink next_kink(const JointModel& joint, double after, double until) const;
   Kink next_kink(const SpringModel& spring, double after, double until) const;
-  /// Returns the energy that a spring has at a state while it acts, J.
+  /// Returns the energy of a spring in a state, J, as if the spring acted at the time of the state.
   double energy(const SpringModel& spring, const State& state) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints
   int n_side_values() const { return n_sides_; }  ///< number of values in C_q^T of all joints
@@ -251,10 +253,10 @@ class Model {
   /// Size of State::at_rest: the number of parts if parts may sleep, else 0.
   std::size_t n_resting() const { return body_->contact.active && body_->contact.sleep ? parts_.size() : 0; }
 
-  /// Whether at most eight parts can move. The impacts of such a model are located in time.
+  /// Whether at most eight parts can move. In such a model, the times of impacts within a step are located.
   bool has_few_moving_parts() const { return n_moving_ <= 8; }
   /// Whether the parts can step in clusters (simulate/clusters.h): contact is active, more than eight parts
-  /// can move, none deforms locally, and not all of them are connected.
+  /// can move, no part deforms locally, and joints and loads do not connect all parts that can move.
   bool forms_clusters() const;
   /// Returns the sets of parts with coordinates that joints and loads connect (load_connections()).
   DisjointSets connected_parts() const;
@@ -264,25 +266,25 @@ class Model {
   /// Sets State::at_limit of all parameters from their values.
   void record_limits(State& state) const;
   /// Returns the values and rates of all parameters of a part in a state. For a part without coordinates,
-  /// returns its rest values of time 0 and zero rates.
+  /// returns its rest values at time 0 and zero rates.
   ParameterValues<double> values(const State& state, int part) const;
   /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
   Eigen::Quaterniond orientation(const State& state, int part) const {
     return orientation(state, part, state.time());
   }
-  /// Returns position and orientation at time t (s) in place of state.time(). For a part without prescribed
+  /// Return position and orientation at time t (s) in place of state.time(). For a part without prescribed
   /// motion, the result does not depend on t.
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
-  /// Returns the position of a material point of a part, m, world. at: the weights of the point among the
-  /// nodes (node_weights()), which make repeated calls faster. PlacedPoint (placed_point.h) keeps these
+  /// Returns the position of a material point of a part, m, world. at: the weights of the nodes at the point
+  /// (node_weights()); repeated calls with these weights are faster. PlacedPoint (placed_point.h) keeps the
   /// weights.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   Vec3<double> world_point(const State& state, int part, const Material<double>& m,
                            const NodeWeights& at) const;
-  /// Returns the weights of a point, with its patch, among the nodes of its part; empty for a part without
-  /// local deformation.
+  /// Returns the weights of the nodes of a part at a point, with the patch of the point (Point::patch); empty
+  /// for a part without local deformation.
   static NodeWeights node_weights(const Point& point);
   /// Returns the positions of the nodes of a part that deforms locally, body frame, m, one row per node.
   Nodes node_positions(const State& state, int part) const;
@@ -299,14 +301,14 @@ class Model {
   std::string coordinate_name(int i) const;
 
  private:
-  /// For each part: the joints on it, each with the number of its side on this part.
+  /// For each part: the joints on the part, each with the number of the side on the part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
 
   /// Returns the number of a part of the body in this model; -1 if this model does not contain the part.
   int number_of(const Part& part) const;
   /// Whether this model contains a part of the body that has coordinates.
   bool moves(const Part* part) const { return part != nullptr && !part->fixed() && number_of(*part) >= 0; }
-  /// The masses of the rigid parts that have been added, by their constants.
+  /// The masses of the rigid parts that have been added; the keys are the constants of the parts.
   using RigidMasses = std::unordered_map<const PartConstants*, std::shared_ptr<const RigidMass>>;
   void add_part(Part& part, RigidMasses& known);
   void add_springs();
@@ -321,7 +323,8 @@ class Model {
   void add_drives();
   FunctionModel resolve(const StateFunction& function, const std::string& what);
   SignalModel resolve(const Signal& signal, const std::string& what);
-  /// Calls act(parts) for each load with the numbers of the parts that it acts on and reads.
+  /// Calls act(parts) for each load. parts: numbers of the parts on which the load acts or whose state it
+  /// reads.
   template <class Act>
   void for_each_load(Act&& act) const;
   /// Adds a port for a point and returns its attachment. what: the load or joint of the point, for messages.

@@ -1,4 +1,5 @@
-// MultiBody: parts, joints and loads. A library user or a scene adds them; Model prepares them for a run.
+// MultiBody: parts, joints and loads. A library user or a scene adds these objects; Model prepares the
+// MultiBody for a run.
 #pragma once
 
 #include <functional>
@@ -36,8 +37,8 @@ struct Spring {
   StateFunction damping;      ///< N s/m
   StateFunction rest_length;  ///< m
   /// The spring acts at the times on <= t < off, s. At other times it has no force and no energy, and does
-  /// not influence the length of steps. The ledger counts the energy that appears at `on` and disappears at
-  /// `off` as work of anchors. Both times must not change while a step is computed.
+  /// not influence the length of steps. The energy that appears at `on` and disappears at `off` is work of
+  /// anchors (Work::anchors) in the ledger. `on` and `off` must not change while a step is computed.
   double on = -std::numeric_limits<double>::infinity(), off = std::numeric_limits<double>::infinity();
   bool acts_at(double t) const { return on <= t && t < off; }
 
@@ -60,14 +61,14 @@ struct PointForce {
   Point at;
   StateVector force;  ///< N
   Frame frame = Frame::world;
-  /// A force by a function of the library user, which replaces `force`: (t, position and velocity in the
-  /// world) -> N in the world. Directional derivatives (Dynamics::jvp) treat the force as constant. During
-  /// a step, the processor replaces numbers of magnitude below 2e-308 by zero.
+  /// A function of the library user. If it is set, its result (N, world) replaces `force`. Arguments: time,
+  /// position and velocity of the point in the world. Directional derivatives (Dynamics::jvp) treat the force
+  /// as constant. During a step, the processor replaces numbers of magnitude below 2e-308 by zero.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
 /// A torque on the frame of a part. If there is a part `against`, the opposite torque acts on this part. The
-/// torque is then internal, as the torque of a motor or a muscle, and conserves the total momenta.
+/// torque is then internal, like the torque of a motor or a muscle, and conserves the total momenta.
 struct Torque {
   std::string name;
   const Part* part = nullptr;
@@ -87,7 +88,7 @@ class MultiBody {
   /// multiple is a kink. A load that changes at a multiple then has no influence on earlier steps.
   double stop_rate = 0;
 
-  /// Adds a part. Returns a reference to the part, valid as long as the MultiBody. Throws
+  /// Adds a part. Returns a reference to the part, which is valid as long as the MultiBody exists. Throws
   /// std::invalid_argument if the name is in use or empty.
   template <class P, class... Args>
   P& add(std::string name, Args&&... args) {
@@ -98,18 +99,18 @@ class MultiBody {
   }
   Part& add(std::unique_ptr<Part> part);
 
-  /// Prepares a part of this body, or one that will be added to it. Parts with equal descriptions share their
-  /// constants (part/constants_cache.h). Throws what Part::prepare() throws. Only one thread at a time may
-  /// call this function.
+  /// Prepares a part that is in this body, or that will be added to it. Parts with equal descriptions share
+  /// their constants (part/constants_cache.h). Throws the exceptions of Part::prepare(). Only one thread at a
+  /// time may call this function.
   void prepare(Part& part) const { part.prepare(constants_); }
-  /// Number of parts whose constants prepare() has computed; all others share constants.
+  /// Number of parts whose constants prepare() has computed; all other parts share constants.
   std::size_t n_computed() const { return constants_.computed(); }
 
   /// Adds a spring between two points: stiffness (N/m), damping (N s/m) and rest length (m). Throws
   /// std::invalid_argument if one of these is a constant that is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, StateFunction stiffness, StateFunction damping = 0,
                  StateFunction rest_length = 0);
-  /// Removes a spring of this MultiBody. No Model that was made after the spring may exist.
+  /// Removes a spring of this MultiBody. No Model that contains the spring may exist.
   void remove(const Spring& spring);
   void remove(const Drive& drive);
   /// Adds a force (N) at a material point. frame: the frame of its components.
@@ -128,14 +129,14 @@ class MultiBody {
   DistributedForce& body_force(std::string name, const Part& part, StateVector per_mass);
 
   /// Returns the coordinate of a hinge (angle, rad), slider (position, m) or ball joint (twist and two
-  /// components of the swing, rad), for signals and drives. It is zero at time 0 with undeformed parts,
-  /// except for the position of a slider, for a hinge with from_axis and for a ball joint with
-  /// BallAxes::rotation. Later calls for the same joint return the result of the first call. Throws
-  /// std::invalid_argument for joints of other types.
+  /// components of the swing, rad), for signals and drives. The coordinate is zero at time 0 with undeformed
+  /// parts, except for a slider, for a hinge with from_axis and for a ball joint with BallAxes::rotation.
+  /// Later calls for the same joint return the result of the first call. Throws std::invalid_argument for
+  /// joints of other types.
   const Joint& coordinate(const Joint& joint, const BallAxes& ball = {});
   /// Limits the angle of a hinge (rad) or the position of a slider (m) to [lower, upper], with a restitution
-  /// from 0 to 1. Adds the one-sided joints "NAME.lower" and "NAME.upper". Throws std::invalid_argument
-  /// unless lower < upper, for a hinge also upper - lower < 2 pi - 0.1, and for joints of other types.
+  /// from 0 to 1. Adds the one-sided joints "NAME.lower" and "NAME.upper". Throws std::invalid_argument for
+  /// joints of other types, unless lower < upper, and for a hinge unless upper - lower < 2 pi - 0.1.
   void limit(const Joint& joint, double lower, double upper, double restitution = 0);
   /// limit_swing() limits the swing of a ball joint, the angle between the axes of both sides, to at most max
   /// (rad), between 0 and pi - 0.05. The function adds the one-sided joint "NAME.swing". limit_twist() limits
@@ -157,9 +158,9 @@ class MultiBody {
   /// Returns gravity at time t (s), m/s^2, world.
   Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
 
-  /// Adds a joint by its formula (body/joints/*.h). points: the points of its first side, then those of its
-  /// second side. Throws std::invalid_argument if the name is in use or empty, if the formula is invalid, if
-  /// it needs another number of points, or if the points of a side are not on one part.
+  /// Adds a joint by its formula (body/joints/*.h). points: the points of its first side, then those of the
+  /// second side. Throws std::invalid_argument if the name is in use or empty, if the formula is invalid or
+  /// needs another number of points, or if the points of a side are not on one part.
   template <class F>
   JointOf<F>& join(std::string name, F formula, std::vector<Point> points) {
     auto joint = std::make_unique<JointOf<F>>(std::move(name), std::move(points), std::move(formula));
@@ -207,7 +208,7 @@ class MultiBody {
   /// Returns the part with a name; nullptr if there is none.
   Part* find(const std::string& name) const;
   bool has_joint(const std::string& name) const { return joint_names_.count(name) > 0; }
-  /// Returns the number of a part of this MultiBody. Throws std::invalid_argument for a part of another one.
+  /// Returns the number of a part of this MultiBody. Throws std::invalid_argument for other parts.
   int index(const Part& part) const;
 
  private:
@@ -216,7 +217,7 @@ class MultiBody {
 
   std::vector<std::unique_ptr<Part>> parts_;
   mutable ConstantsCache constants_;                // Model prepares the parts of a constant body
-  std::unordered_map<std::string, int> number_of_;  // by name
+  std::unordered_map<std::string, int> number_of_;  // keys: names of parts
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;
   std::vector<std::unique_ptr<Torque>> torques_;

@@ -12,8 +12,8 @@ struct Point {
   Material<double> material;   ///< the material point of the part
   TimeVector world;            ///< position of a point of the world, m
   /// For a part that deforms by nodes: radius (m, at rest) of a patch of nodes around the material point. The
-  /// position of the point is then a weighted mean over these nodes, and a force on the point is spread over
-  /// them. 0: the nodes of the element around the material point.
+  /// position of the point is then a weighted mean over these nodes, and a force on the point is distributed
+  /// to these nodes. 0: the nodes of the element around the material point.
   double patch = 0;
 };
 

@@ -17,8 +17,8 @@ inline double lever(const PartModel& m, int k) {
 }
 
 /// Returns the factors that convert the local coordinates of a part to lengths, m: 1 for nodes, and the size
-/// of the part for angles of an energy. Amplitudes of modes have the unit m kg^(1/2); their factor is
-/// 1 / sqrt(mass of the part).
+/// of the part for the angles that a bending energy of a shell adds. Amplitudes of modes have the unit
+/// m kg^(1/2); their factor is 1 / sqrt(mass of the part).
 inline VecX<double> local_levers(const PartModel& m) {
   if (m.local->oscillators() != nullptr)
     return VecX<double>::Constant(m.n_d(), 1 / std::sqrt(m.part->total_mass()));
@@ -45,8 +45,8 @@ double shape_speed(const PartModel& m, const V& v, double reach) {
   return m.n_s == 0 ? 0 : reach / m.size * speed;
 }
 
-/// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, normally 1/s. It
-/// defines the unit of time where nothing else does.
+/// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, by default 1/s. This
+/// rate is the unit in formulas that need a scale of time and have no other.
 inline double slow_rate(const Model& model) {
   return 0.1 * model.body().stabilization.rate;
 }

@@ -32,24 +32,25 @@ inline constexpr std::array<const char*, kWorks> kWorkNames{
 /// The mode of a joint.
 enum class JointMode : std::int8_t {
   off,      ///< outside its times on ... off: no force
-  closing,  ///< open: Baumgarte's equation closes it
+  closing,  ///< open: Baumgarte's equation closes the joint
   closed,   ///< C = 0 holds; a string is taut
   slack     ///< a string with C > 0: no force
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
 /// start), and predicts this impulse if the step predicts impulses (contact/predicted_impulses.h). Contacts
-/// without impulse are not stored. Without predictions, contacts that share no moving part with others are
-/// not stored either. Contacts on single nodes of a mesh, and contacts that moving parts connect with such
-/// contacts, are not stored: their impulses start at zero. The impulses of limits and strings start at zero
-/// too.
+/// without impulse are not stored. Without predictions, contacts that share no moving part with other
+/// contacts are not stored. Contacts on single nodes of a mesh, and contacts that moving parts connect with
+/// contacts on nodes, are not stored: their impulses start at zero. The impulses of limits and strings start
+/// at zero too.
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
-  /// Mean force on part a, N, world: of the last step, or of its second half if the step was doubled.
+  /// Mean force on part a, N, world, in the last step; in the second half of a step that was repeated as two
+  /// half steps.
   Vec3<double> force;
   /// Whether this force acted during the whole step: the contact rested, and no impact happened at the bodies
-  /// that contacts connect with it.
+  /// that contacts connect with this contact.
   bool lasting = false;
 };
 
@@ -58,16 +59,16 @@ struct CachedContact {
 /// values after a step.
 struct StepMemory {
   double h = 0;                 ///< length of the next step, s; 0 before the first step
-  double error = 0;             ///< State::error of the last step of its cluster
-  double contact_residual = 0;  ///< State::contact_residual of that step, m/s
+  double error = 0;             ///< State::error of the last step of the part's cluster
+  double contact_residual = 0;  ///< State::contact_residual of the last step, m/s
   int contact_cache_age = 0;    ///< State::contact_cache_age
 };
 
 struct State {
   double start = 0;       ///< time of step 0, s
-  double h = 0;           ///< step length, s; if errors are controlled, that of the next step
+  double h = 0;           ///< step length, s; if errors are controlled, the length of the next step
   std::int64_t step = 0;  ///< number of steps since start; time is start + step * h
-  double error = 0;       ///< error of the last step divided by the tolerance; 0 if it is not measured
+  double error = 0;       ///< error of the last step divided by the tolerance; 0 if no error is measured
   /// Largest violation of the contact laws by the impulses of the last step, m/s.
   double contact_residual = 0;
   VecX<double> q;  ///< coordinates of all parts: c (3), quaternion w x y z (4), q_s, q_d of each

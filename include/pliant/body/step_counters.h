@@ -8,11 +8,11 @@ namespace pliant {
 /// A violation of the laws of contact: a velocity, m/s, or an overlap, m.
 struct ContactViolation {
   double value = 0;      ///< m/s or m
-  double tolerance = 0;  ///< the violation that is allowed there, m/s or m
-  double time = 0;       ///< end of its step, s
+  double tolerance = 0;  ///< the allowed violation, m/s or m
+  double time = 0;       ///< end of the step with this violation, s
 
   bool is_allowed() const { return value <= tolerance; }
-  /// Replaces this violation by another one if the other is larger in units of its tolerance.
+  /// Replaces this violation by `other` if the ratio of value to tolerance is larger for `other`.
   void keep_worse(const ContactViolation& other) {
     if (other.value * tolerance > value * other.tolerance || (value == 0 && other.value > 0)) *this = other;
   }
@@ -34,12 +34,12 @@ struct StepCounters {
   long contact_fallbacks = 0;
   long contact_cutoffs =
       0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts
-  /// Impacts in sequences (ImpactOrder::sequential); pairs that approach equally fast count as one.
+  /// Impacts in sequences (ImpactOrder::sequential); pairs that approach equally fast are one impact.
   long sequential_impacts = 0;
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s
   double contact_overlap = 0;   ///< largest overlap after the last separation of an accepted step, m
   /// Of accepted steps, in units of the tolerances: the worst residual and the worst overlap after the last
-  /// separation. Overlaps of bodies that started in each other, and are still being separated, are included.
+  /// separation. These include the overlaps of bodies that overlapped at time 0 and are not yet separated.
   ContactViolation worst_residual{}, worst_overlap{};
 
   /// Adds counts, and keeps the larger errors of contact.

@@ -26,7 +26,7 @@ class UnsatisfiableModel : public StepFailure {
   using StepFailure::StepFailure;
 };
 
-/// A step needs more memory than there is.
+/// A step needs more memory than is available.
 class OutOfMemory : public std::bad_alloc {
  public:
   explicit OutOfMemory(std::string what) : what_(std::move(what)) {}

@@ -1,5 +1,5 @@
 // The workspace of an evaluation: all quantities that are recomputed from (t, q, v), in the order of the
-// stages that compute them. A workspace belongs to one model; constants of the model stay in it between
+// stages that compute them. A workspace belongs to one model, and keeps constants of the model between
 // evaluations. S is double, or Dual<1> for directional derivatives. include/pliant/body/README.md lists the
 // sizes.
 #pragma once
@@ -27,19 +27,19 @@ struct PartWorkspace {
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< position (m) and velocity (m/s) of each, world
   // Stage 2, mass.
   /// M, (6 + n_s) x (6 + n_s), and g_q of Eq. (11). For a part that deforms locally, g_q is not computed, and
-  /// M is n_x x n_x, the mass matrix of its velocities in a group. Stage 5 computes this M, unless neither a
-  /// joint nor a limit can push on the part. Stage 2 leaves inertia.M of a rigid part empty, see M().
+  /// M is n_x x n_x, the mass matrix of its velocities in a group. Stage 5 computes this M if a joint or a
+  /// limit can push on the part. Stage 2 leaves inertia.M of a rigid part empty, see M().
   Inertia<S> inertia;
   const PartModel* rigid = nullptr;  ///< set for a rigid part, whose constants replace inertia.M and `factor`
   // Stage 3, forces.
-  /// Sum of all generalised forces on v_r, body frame, 6 + n_s; for a part that deforms locally, without
-  /// those that LocalDeformation::forces() computes.
+  /// Sum of all generalised forces on v_r, body frame, 6 + n_s; for a part that deforms locally, without the
+  /// forces of LocalDeformation::forces().
   VecX<S> f;
   Vec<S, kWorks> power;             ///< power (W) of the works of this part: damping, drag, actuation
   std::vector<Vec3<S>> port_force;  ///< force of the loads at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
   SymmetricFactor<S> factor;  ///< L D L^T of M
-  VecX<S> a_r;                ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
+  VecX<S> a_r;                ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at the part's joints, n_x
   /// Factor, s^2: M is increased by this factor times K_s while impulses act after an implicit step, see
   /// method/implicit/stiff_projection_metric.h.
   double stiffening = 0;
@@ -80,7 +80,7 @@ struct PartWorkspace {
   }
 };
 
-/// Returns the mass matrix of v_r of a part, (6 + n_s) x (6 + n_s). For a part that deforms locally, it is
+/// Returns the mass matrix of v_r of a part, (6 + n_s) x (6 + n_s). For a part that deforms locally, returns
 /// the mass matrix without local displacements.
 inline const MatX<double>& mass_matrix(const PartWorkspace<double>& w) {
   return w.local ? w.local->H0 : w.M();

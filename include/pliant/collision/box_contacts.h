@@ -1,7 +1,7 @@
 // Contacts of a box with a box and with a ball, in closed form. Two boxes are tested along the face normals
-// of both and along the cross product of each pair of their edges (separating axes: Gottschalk, Lin and
+// of both boxes and along the cross product of each pair of their edges (separating axes: Gottschalk, Lin and
 // Manocha 1996). If the gap is largest along a face normal, the opposite face of the other box is clipped to
-// that face, and the corners of the clipped face are the contact points. If it is largest along a cross
+// that face, and the corners of the clipped face are the contact points. If the gap is largest along a cross
 // product, the two edges cross, and the contact is one point.
 #pragma once
 
@@ -31,11 +31,11 @@ std::array<Vec3<double>, 8> box_corners(const Vec3<double>& half);
 
 /// Appends the contacts of boxes a and b whose gap is at most max_gap (m): one point for two crossing edges,
 /// up to eight points for a face, or the nearest corner if the faces do not overlap. Each gap is measured
-/// along the axis with the largest gap. For separated boxes it may be less than their distance.
+/// along the axis with the largest gap. For separated boxes this gap may be less than their distance.
 void touch_boxes(const PlacedBox& a, const PlacedBox& b, double max_gap, std::vector<BoxTouch>& found);
 
-/// Returns the contact of a ball (centre and radius in m, world) and a box. Its point is the point of the
-/// ball nearest to the box, or deepest inside the box. The ball is side a.
+/// Returns the contact of a ball (centre and radius in m, world) and a box. The ball is side a. BoxTouch::x
+/// is the point of the ball that is nearest to the box, or deepest inside the box.
 BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box);
 
 }  // namespace pliant

@@ -14,8 +14,8 @@ class BoxTree {
  public:
   /// Builds the tree. boxes: must outlive all later queries.
   void build(const std::vector<Eigen::AlignedBox3d>& boxes);
-  /// Computes all pairs (i, j) of box numbers, i < j, whose boxes are at most max_distance (m) apart, sorted
-  /// by i and then j. `pairs` is overwritten.
+  /// Computes all pairs (i, j), i < j, of numbers of boxes that are at most max_distance (m) apart, sorted by
+  /// i and then j. `pairs` is overwritten.
   void near_pairs(double max_distance, std::vector<std::pair<int, int>>& pairs) const;
 
  private:

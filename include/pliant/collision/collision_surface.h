@@ -1,7 +1,7 @@
-// The surface of a part for contact search: sample points all over the surface, and its lowest points over a
-// plane or another part. The search starts from sample points and is refined on the surface itself, so that
-// round parts roll smoothly. Ellipsoids over planes and over each other need no sample points
-// (ellipsoid_points.h).
+// The surface of a part for contact search: sample points all over the surface, and the lowest points of the
+// surface over a plane or another part. The search starts from sample points and continues on the exact
+// surface, so that round parts roll smoothly. Ellipsoids over planes and over each other need no sample
+// points (ellipsoid_points.h).
 #pragma once
 
 #include <memory>
@@ -72,8 +72,9 @@ class CollisionSurface {
   /// not known.
   const PartPatches* rest_patches() const;
   /// Returns the points that support the part: the lowest point, and the outermost points of a level edge
-  /// (two) or of a level face (about four), so that boxes stand. No point is higher than max_gap (m). p: the
-  /// sample points, as columns in the body frame, m. heights: field.height() at each sample point, m.
+  /// (two) or of a level face (about four), so that a box stands on its corners. No point is higher than
+  /// max_gap (m). p: the sample points, as columns in the body frame, m. heights: field.height() at each
+  /// sample point, m.
   std::vector<LowPoint> low_points(const ParameterValues<double>& values, const Eigen::Matrix3Xd& p,
                                    const VecX<double>& heights, double max_gap, const Field& field) const;
 
@@ -87,8 +88,8 @@ class CollisionSurface {
     std::vector<Material<double>> coarse;  ///< points that estimate reach() of a part with dynamic parameters
   };
   const Samples& samples() const;
-  /// Minimises field.descent() from sample point i. The search stays within one spacing_ of this point, in
-  /// longitude within two.
+  /// Minimises field.descent() from sample point i. The search stays within one spacing_ of this point in
+  /// each coordinate, within two in longitude.
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;

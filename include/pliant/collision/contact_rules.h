@@ -17,7 +17,7 @@ struct ContactRule {
   double friction = 0, restitution = 0;
 };
 
-/// Returns the size (m) of the part of a contact, or of the smaller of its two parts.
+/// Returns the size (Part::size(), m) of the part of a contact, or of the smaller of its two parts.
 double smaller_size(const Model& model, const Contact& contact);
 
 class ContactRules {

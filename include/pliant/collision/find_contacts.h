@@ -1,8 +1,8 @@
 // Contact search of parts without local deformation. A tree of boxes finds the parts that are near each
-// other. Ellipsoids, boxes and balls on boxes have closed forms. Contacts of other undeformed or sheared
-// parts with planes, and with each other if they are convex, follow from support functions. Parts that are
-// not convex touch each other at common normals of their faces, edges and vertices. Other contacts are the
-// lowest points of each part over obstacles and over the parts near it.
+// other. Ellipsoids, boxes and balls on boxes have closed forms. Other parts with support functions use these
+// functions to find contacts with planes, and with each other if both parts are convex. Parts that are not
+// convex touch each other at common normals of their faces, edges and vertices. Other contacts are the lowest
+// points of each part over obstacles and over the parts near it.
 #pragma once
 
 #include <memory>
@@ -23,11 +23,11 @@ class Hull;
 /// The class is not thread-safe: its const functions write to scratch storage that is kept from call to call.
 class ContactFinder {
  public:
-  /// model: must outlive this object. Parts that deform locally are left to MeshFinder. Throws
+  /// model: must outlive this object. The finder ignores parts that deform locally (see MeshFinder). Throws
   /// std::invalid_argument as ContactRules and ObstacleMesh do.
   explicit ContactFinder(const Model& model);
-  /// Makes the finder of a model of some parts of the same body. It shares surfaces, rules and obstacles with
-  /// the finder of the whole body, whose model must outlive it.
+  /// Makes a finder for a model that contains some parts of a body. The new finder shares surfaces, rules and
+  /// obstacles with `whole`, the finder of the whole body. The models of both must outlive the new finder.
   ContactFinder(const Model& model, const ContactFinder& whole);
   ~ContactFinder();
 
@@ -45,53 +45,54 @@ class ContactFinder {
   /// obstacles; after these all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
                             const std::vector<bool>* marked = nullptr) const;
-  /// Whether find() finds the contacts of this pair: neither side deforms locally. MeshFinder finds the
-  /// others.
+  /// Whether find() finds the contacts of this pair, because neither side deforms locally. MeshFinder finds
+  /// the contacts of all other pairs.
   bool finds(const Contact& contact) const {
     return (contact.a.part < 0 || surfaces_[at(contact.a.part)]) &&
            (contact.b.part < 0 || surfaces_[at(contact.b.part)]);
   }
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Returns whether the contact point moves smoothly while the sides roll and slide: one side is a part
-  /// without faces, edges and nearly flat regions, with its shape in the last call of find(), and the other
-  /// side is a part, a plane or a flat obstacle (ObstacleMesh::is_flat).
+  /// Returns whether the contact point moves smoothly while the sides roll and slide. For this, one side must
+  /// be a part without faces, edges and nearly flat regions, with the parameters of the last call of find().
+  /// The other side must be a part, a plane or a flat obstacle (ObstacleMesh::is_flat).
   bool is_smooth(const Contact& contact) const;
   /// Returns a contact with a plane, moved to the state and time of the last call of find(). Side a keeps its
-  /// material point; x, gap and prescribed_velocity change. Returns nothing for other contacts, if the plane
-  /// does not act, for parts without a hull, and for parts without nearly flat regions. The contact points of
-  /// the latter follow from the state.
+  /// material point; x, gap and prescribed_velocity change. Returns nothing if the contact is not with a
+  /// plane, if the plane does not act, or if the part has no support function. Also returns nothing for a
+  /// part without nearly flat regions, because its contact points are functions of the state.
   std::optional<Contact> follow(const Contact& contact) const;
-  /// Points of a part that are nearer to each other than this (m) are one contact. contact: its side a is a
-  /// part without local deformation.
+  /// Returns the distance (m) below which two contact points of part contact.a are merged into one. contact:
+  /// its side a is a part without local deformation.
   double merge_distance(const Contact& contact) const;
-  /// Velocity of side a relative to side b at a contact, m/s, world. It includes the prescribed motion
-  /// (Contact::prescribed_velocity).
+  /// Returns the velocity of side a relative to side b at a contact, m/s, world. It includes the prescribed
+  /// motion (Contact::prescribed_velocity).
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// Returns the largest admissible depth of a contact, m: kMaxTravelShare of the thickness of its thinner
-  /// part. The search may find a deeper contact on the far side of this part, where the normal is wrong. Only
-  /// for parts without local deformation.
+  /// Returns the largest admissible depth of a contact, m: kMaxTravelShare times the thickness of its thinner
+  /// part. The search may find a deeper contact on the far side of this part, where the normal is wrong. The
+  /// function is only for parts without local deformation.
   double max_resolved_depth(const Contact& contact) const;
   /// Largest motion of two touching parts relative to each other in a step, as a share of the thickness of
   /// the thinner part.
   static constexpr double kMaxTravelShare = 0.4;
-  /// Result of the search before a step: whether anything can touch during the step, and its largest length.
+  /// Result of the search before a step: whether anything can touch during the step, and the largest length
+  /// of the step.
   struct Neighbourhood {
     bool empty = true;  ///< nothing can touch during the step
     bool soft = false;  ///< parts that deform locally may touch something; MeshFinder::approach() sets it
     double h = 0;       ///< largest step in which no part passes through another part or an obstacle, s
-    /// Distance that each part may move beyond the prediction without changing this result, m.
+    /// Distance that each part may move beyond the predicted motion without changing this result, m.
     double spare = 0;
 
-    /// Reduces spare. Reduces h if two sides move relative to each other by more than max_travel (m) in a
-    /// step of `whole` seconds. travel: their motion at the velocities of the start, m. change: the
-    /// additional motion by the change of these velocities, m. done: whether the step is already done; then
-    /// an excess of one eighth of max_travel is tolerated.
+    /// Limits `spare` and `h` for two sides that move relative to each other in a step of `whole` seconds. h
+    /// is reduced if they move by more than max_travel (m). travel: their motion at the velocities of the
+    /// start of the step, m. change: the additional motion by the change of these velocities, m. done:
+    /// whether the step is already done; then an excess of one eighth of max_travel is tolerated.
     void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
-  /// Returns the neighbourhood of a coming step from time t (s) of h seconds. reach: the displacement by a
-  /// constant acceleration in the step, as a multiple of acceleration * h^2; it depends on the method (see
-  /// Integrator). The only predicted force is gravity.
+  /// Returns the neighbourhood of a coming step that starts at time t (s) and lasts h seconds. reach: the
+  /// displacement by a constant acceleration in the step, as a multiple of acceleration * h^2; it depends on
+  /// the method (see Integrator). Gravity is the only force in the predicted motion.
   Neighbourhood neighbourhood(const State& state, double t, double h, double reach = 0.5) const;
   /// Returns the neighbourhood of a step that has led to the state `after`. foreseen: the result of
   /// neighbourhood() for this step or a longer one. `foreseen` is returned if the motion of no part exceeded

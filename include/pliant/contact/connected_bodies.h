@@ -17,8 +17,8 @@ class ConnectedBodies {
     const int one = body_of(a), other = body_of(b);
     if (one >= 0 && other >= 0) sets_.unite(one, other);
   }
-  /// Returns the number of the set of two parts at a contact: the smallest part of its bodies; -1 if neither
-  /// part can move.
+  /// Returns the number of the set of two parts at a contact; -1 if neither part can move. The number of a
+  /// set is the smallest part number that represents one of its bodies (body_of()).
   int set_of(int a, int b) {
     const int one = body_of(a), body = one >= 0 ? one : body_of(b);
     return body >= 0 ? sets_.root(body) : -1;

@@ -1,5 +1,6 @@
 // Function bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and the changes
-// of velocity that their impulses cause, with the reactions of joints.
+// of velocity that their impulses cause, with the reactions of joints. A mover is a part, an island (parts
+// that joints connect) or a mesh node that impulses move (movers.h).
 #pragma once
 
 #include <pliant/contact/contact_problem.h>
@@ -153,8 +154,8 @@ PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3
 }
 
 /// Adds a one-sided row for each parameter of the movers that is at a limit, now or at the start of the
-/// motion: the parameter must not pass the limit. Parameters without inertia, and those of parts that move by
-/// nodes, get no row.
+/// motion: the parameter must not pass the limit. Parameters without inertia, and parameters of parts that
+/// move by nodes, get no row.
 PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
   for (const Mover& mover : movers_.all()) {  // the new rows add no movers
     if (mover.node >= 0) continue;
@@ -168,7 +169,7 @@ PLIANT_INLINE void ContactProblem::add_limits(const State* start) {
           continue;
         system_.add_limit();
         Side side = make_side(part);
-        side.J(0, 6 + k) = -mode * lever(m, 6 + k);  // the row is a speed, as those of contacts
+        side.J(0, 6 + k) = -mode * lever(m, 6 + k);  // so that the row is a speed, like rows of contacts
         sides_.push_back(std::move(side));
         complete();
       }
@@ -396,20 +397,20 @@ PLIANT_INLINE std::vector<double> ContactProblem::close_gaps() {
     }
     return numbers;
   };
-  std::vector<int> sharing(movers_.all().size(), 0);  // number of these contacts at each mover
+  std::vector<int> sharing(movers_.all().size(), 0);  // number of contacts with predicted impulses at a mover
   for (int k = 0; k < n; ++k)
     for (const int mover : movers_of(k))
       if (mover >= 0) ++sharing[at(mover)];
   std::vector<double> impulses(at(n), 0);
   VecX<double> displacements = VecX<double>::Zero(movers_.n_x());
   for (int k = 0; k < n; ++k) {
-    int connected = 0;  // number of these contacts at its movers
+    int connected = 0;  // number of contacts with predicted impulses at both movers of contact k
     for (const int mover : movers_of(k))
-      if (mover >= 0) connected += sharing[at(mover)] - (connected > 0 ? 1 : 0);  // contact k once
+      if (mover >= 0) connected += sharing[at(mover)] - (connected > 0 ? 1 : 0);  // contact k is counted once
     if (connected == 0) continue;
-    system_.constant(k).setZero();  // a velocity, which is not to be added to a displacement
+    system_.constant(k).setZero();  // the constant is a velocity, and shift_ is a displacement
     const double gap = contacts_[at(k)].gap + system_.velocity(k, shift_)[0];
-    if (!(std::abs(gap) <= contacts_[at(k)].lift)) continue;  // not an error of the prediction
+    if (!(std::abs(gap) <= contacts_[at(k)].lift)) continue;  // the prediction has not caused this gap
     impulses[at(k)] = -gap / (system_.effect(k, k)(0, 0) * connected);
     const Vec3<double> impulse = std::exchange(system_.impulse(k), Vec3<double>(impulses[at(k)], 0, 0));
     system_.add_change(k, 1, displacements);

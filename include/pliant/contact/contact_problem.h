@@ -1,6 +1,6 @@
-// The problem of simultaneous contacts at velocity level: each contact has a relative velocity u of its sides
-// and an impulse p that satisfy Coulomb's law (solve/coulomb_system.h), while closed joints stay closed,
-// parameters stay within their limits and taut strings do not become longer.
+// The problem of simultaneous contacts at velocity level. The relative velocity u of the sides of each
+// contact and its impulse p satisfy Coulomb's law (solve/coulomb_system.h). Closed joints stay closed,
+// parameters stay within their limits, and taut strings do not become longer.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace pliant {
 
 struct ContactSolution {
-  /// Of each contact on side a, with the predicted impulse, N s, world.
+  /// Impulse of each contact on side a, including the predicted impulse, N s, world.
   std::vector<Vec3<double>> impulse;
   std::vector<Vec3<double>> velocity;  ///< of side a relative to side b after the impulses, m/s, world
   double residual = 0;                 ///< largest violation of Coulomb's law, m/s
@@ -22,15 +22,15 @@ struct ContactSolution {
 };
 
 /// Returns whether parameter k of a part is at its lower limit (-1), at its upper limit (1), or at none (0).
-/// Within 1e-6 sizes of a limit, as a displacement, it is at the limit.
+/// Within 1e-6 sizes of a limit, as a displacement, the parameter is at the limit.
 int near_limit(const PartModel& m, int k, const State& state);
 
 class ContactProblem {
  public:
-  /// work: as evaluate_touched() left it for these contacts. state, contacts and work must outlive this
+  /// work: evaluated by evaluate_touched() for these contacts. state, contacts and work must outlive this
   /// object. start: if not nullptr, the state at the start of the motion. A parameter that is at a limit in
-  /// this state, or within 1e-6 sizes of it, is treated as at the limit: it has left the limit in the motion
-  /// only because the contacts did not act.
+  /// this state, or within 1e-6 sizes of the limit, is treated as being at the limit: it has left the limit
+  /// in the motion only because the contacts did not act.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts, const State* start = nullptr);
 
@@ -47,8 +47,8 @@ class ContactProblem {
   /// Returns the velocity of side a relative to side b at each contact, m/s, world, with the velocities of
   /// another state.
   std::vector<Vec3<double>> velocities(const State& state) const;
-  /// Limits the displacements of movers that the impulses cause. Large impulses with different times
-  /// Contact::since (on a light part between heavy ones) may nearly cancel in velocity, but not in
+  /// Limits the displacements of movers (movers.h) that the impulses cause. Large impulses with different
+  /// times Contact::since (on a light part between heavy ones) may nearly cancel in velocity, but not in
   /// displacement. If a displacement exceeds max_time (s) times the change of velocity, it becomes limit_time
   /// (s) times this change. Then subtracts the displacements that predicted impulses have caused in a motion
   /// of max_time seconds.
@@ -75,8 +75,8 @@ class ContactProblem {
 
   const Model& model() const { return model_; }
   const Movers& movers() const { return movers_; }
-  /// Return the velocities of a mover before and after the impulses, and its displacement by the impulses:
-  /// mover.size numbers each.
+  /// Return the velocities of a mover (movers.h) before and after the impulses, and its displacement by the
+  /// impulses. Each result has mover.size numbers.
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
   auto shift(const Mover& mover) const { return shift_.segment(mover.first, mover.size); }
@@ -92,14 +92,14 @@ class ContactProblem {
     const Island* island;
     MatX<double> lambda;
   };
-  /// A taut string: its number among the contacts of the system, and its row among those of all joints.
+  /// A taut string: its number among the contacts of the system, and its row among the rows of all joints.
   struct String {
     int contact, row;
   };
   /// A side of the contact that is being added. J maps the velocities of its part or node to the velocity of
   /// the side in the axes of the contact, with a minus sign for side b.
   struct Side {
-    int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
+    int part, mover, first;  ///< first: index of the velocities of the part in the velocities of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;
     /// Columns of J for some local coordinates; first: index of their rates in the velocities of the mover.
     struct Local {

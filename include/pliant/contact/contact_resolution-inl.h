@@ -31,12 +31,12 @@ inline constexpr int kMaxChainLinks = 4;
 /// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
 /// than this share of the size of the smaller body.
 inline constexpr double kSameContact = 0.05;
-/// A motion is a whole step if it is shorter by at most this share.
+/// A motion is a whole step if it is shorter than the step by at most this share.
 inline constexpr double kRounding = 1e-9;
 /// Largest number of warm-started steps in a row.
 inline constexpr int kMaxWarmStartAge = 10;
 /// Returns a state in which the impulses of a solved problem have acted for `time` seconds at all contacts.
-/// state: that before the impulses. The displacements of the problem become `time` times the changes of
+/// state: the state before the impulses. The displacements of the problem become `time` times the changes of
 /// velocity.
 inline State displaced_evenly(ContactProblem& problem, const Model& model, const Workspace<double>& work,
                               double time, State state) {
@@ -45,8 +45,8 @@ inline State displaced_evenly(ContactProblem& problem, const Model& model, const
   return state;
 }
 
-/// Returns those parts of a list that are at no contact that rebounds: their velocities do not jump. Parts of
-/// an island jump together.
+/// Returns the parts of a list whose velocities do not jump, because no contact of the part, or of its island
+/// (parts that joints connect), rebounds.
 inline std::vector<int> without_rebound(const Model& model, const std::vector<Contact>& contacts,
                                         std::vector<int> parts) {
   std::vector<Contact> rebounding;
@@ -61,8 +61,9 @@ inline std::vector<int> without_rebound(const Model& model, const std::vector<Co
   return parts;
 }
 
-/// Returns the index in [first, last) of the position nearest to x, nearer than `within` (m) and not taken;
-/// `last` if there is none. position, is_taken: functions of the index.
+/// Returns the index in [first, last) of the position that is nearest to x, among the positions nearer than
+/// `within` (m) for which is_taken is false; `last` if there is none. position, is_taken: functions of the
+/// index.
 template <class Position, class IsTaken>
 std::size_t nearest(std::size_t first, std::size_t last, const Vec3<double>& x, double within,
                     Position&& position, IsTaken&& is_taken) {
@@ -164,8 +165,8 @@ PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, d
       problem.warm_start_at(static_cast<int>(k), h * state.contact_cache[at(numbers[k])].force);
 }
 
-/// Returns whether the force of each contact lasts: it and all contacts of the bodies that contacts connect
-/// with it rest during the whole motion.
+/// Returns for each contact whether its force lasts: the contact itself, and all contacts of bodies that
+/// contacts connect with it, rest during the whole motion.
 PLIANT_INLINE std::vector<bool> ContactResolution::lasting(const ResolvedMotion& motion,
                                                            const std::vector<Contact>& contacts) const {
   const Model& model = dynamics_.model();
@@ -237,7 +238,8 @@ PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedM
   resolve_once(step, motion, contacts, motion.h > 0);
 }
 
-/// Adds to the travel of each part its travel towards the bodies that it meets in a motion of h seconds.
+/// Increases the travel of each part to at least its travel towards the bodies that it meets in a motion of h
+/// seconds.
 PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double h,
                                                      const std::vector<Contact>& contacts) {
   travel_.resize(dynamics_.model().parts().size(), 0);
@@ -250,10 +252,10 @@ PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double 
 }
 
 /// Computes the impulses and limits the displacements that they cause. Adds their work to the state, and the
-/// reactions of joints to the record. The state and the counters store the largest residual of their contact
-/// solutions. To second order, the work of an impulse is that of a constant force during the motion. The
-/// impulses are also recorded for the contact cache, unless motion.h is zero. warm: whether the impulses
-/// start from the contact cache.
+/// reactions of joints to the record. Updates the largest residual in the state and in the counters. To
+/// second order, the work of an impulse is that of a constant force during the motion. The impulses are also
+/// recorded for the contact cache, unless motion.h is zero. warm: whether the search for the impulses starts
+/// from the contact cache.
 PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const ResolvedMotion& motion,
                                                        const std::vector<Contact>& contacts, bool warm,
                                                        ContactProblem& problem) {
@@ -316,10 +318,10 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   ContactProblem problem(dynamics_.model(), state, step.work, contacts, &before);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
-  // follows a prescribed path, or if the impulse acts at one instant. At nodes of a mesh, and for parts with
-  // damping, it is not exact either, because elastic and damping forces are not constant. Then Work::contact,
-  // or Work::anchors for a prescribed path, is corrected: the works of this resolution add up to the change
-  // of the energy of the touched parts.
+  // follows a prescribed path, or if the impulse acts at one instant. It is also not exact at nodes of a mesh
+  // and for parts with damping, because elastic and damping forces are not constant. Then Work::contact, or
+  // Work::anchors for a prescribed path, is corrected: the sum of the works of this resolution becomes the
+  // change of the energy of the touched parts.
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state,
              at_nodes = std::any_of(contacts.begin(), contacts.end(), is_at_nodes);
   std::optional<DampingWork> damping;
@@ -329,9 +331,10 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   const bool damped = damping && damping->acts();
   const bool by_energy = driven || instant || damped || state.at_limit != before.at_limit ||
                          state.joints != before.joints || (at_nodes && motion.force_time < h);
-  // Methods with a reach of 1 conserve the energy at the positions half a step earlier, and the work of
-  // solve() is that of impulses which displace for the whole step (README.md). At nodes, Work::contact gets
-  // the change of this energy from the state with these displacements to the actual one.
+  // Methods with a reach of 1 (FreeMotion::reach) conserve the energy at the positions half a step earlier.
+  // solve() computes the work of impulses that cause displacements for the whole step (README.md). At nodes,
+  // Work::contact gets the change of this energy between the state with these displacements and the actual
+  // state.
   const bool by_displacement = at_nodes && !by_energy;
   const auto balance_of = [&](const State& at_end) {
     VecX<double> q = at_end.q;
@@ -352,9 +355,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   }
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // Adds the work of forces during the displacement by the impulses. Methods with a reach of 1
-  // (FreeMotion::reach) need this at nodes only: they compute the work of forces from the velocities at the
-  // start of the motion. That work is zero for a resting part, and includes displacements for h seconds.
+  // Adds the work of forces during the displacement by the impulses. Methods with a reach of 1 need this at
+  // nodes only, because they compute the work of forces from the velocities at the start of the motion. For a
+  // resting part this work is zero, which is right for impulses that cause displacements for h seconds.
   if (motion.force_time < h || by_displacement)
     state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (damped) damping->correct(state);

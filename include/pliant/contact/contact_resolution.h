@@ -38,7 +38,7 @@ struct ResolvedMotion {
   double force_time;  ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
   double h;           ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated
   bool separates = true;  ///< whether overlaps are separated afterwards; another resolution follows if not
-  /// Velocities at its start before predicted impulses; nullptr: there are none.
+  /// Velocities at its start before predicted impulses; nullptr: there are no predicted impulses.
   const VecX<double>* v_unpredicted = nullptr;
 };
 
@@ -63,15 +63,16 @@ class ContactResolution {
 
   /// Applies the impulses at the contacts at step.t, the end of a motion, and the displacements that these
   /// impulses cause (Contact::since). Then separates bodies that still overlap, unless motion.h is zero or
-  /// motion.separates is false. contacts: not a result of RestingContacts::near(), which changes meanwhile.
+  /// motion.separates is false. contacts: must not refer to the result of RestingContacts::near(), because
+  /// that list changes during the call.
   void resolve(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts);
-  /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
-  /// during the motion of step.h seconds, and the impacts that follow, in at most four resolutions. If the
-  /// fourth is needed, StepCounters::contact_cutoffs grows by one. Approaches and rebounds that are slower
-  /// than min_impact_speed (m/s) are ignored.
+  /// The impulses at the contacts `resolved` may have pushed bodies into others during the motion of step.h
+  /// seconds. Resolves these impacts, and the impacts that follow, in at most four resolutions. If the fourth
+  /// is needed, StepCounters::contact_cutoffs grows by one. Approaches and rebounds that are slower than
+  /// min_impact_speed (m/s) are ignored.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
-  /// Returns the numbers of contacts in the contact cache of a state; -1: not in the cache.
+  /// Returns for each contact its index in the contact cache of a state, or -1 if it is not in the cache.
   std::vector<int> cached_numbers(const State& state, double t, const std::vector<Contact>& contacts) const;
   /// Sets the start values of the impulses of a problem to those of the cached forces over h seconds.
   /// Contacts that are not in the cache start from zero, and so do all contacts of a cold start.

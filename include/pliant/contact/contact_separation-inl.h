@@ -30,10 +30,10 @@ inline constexpr int kMaxSeparationRounds = 16;
 /// separated.
 inline constexpr double kAllowedOverlap = 1e-4;
 /// With ContactSettings::tolerance, overlaps up to kOverlapPerTolerance times the tolerance, in sizes of the
-/// smaller body, are not separated, if they are at most kMaxAllowedOverlap times RestingContacts::gap: a body
-/// that overlaps by more than this gap would rest at any velocity.
+/// smaller body, are not separated. They are limited to kMaxAllowedOverlap times RestingContacts::gap,
+/// because a body that overlaps by more than this gap would rest at any velocity.
 inline constexpr double kOverlapPerTolerance = 1e-3, kMaxAllowedOverlap = 0.5;
-/// Overlaps of this many units in the last place of the positions are not separated either.
+/// Overlaps up to this many units in the last place of the positions are not separated either.
 inline constexpr double kRoundingUlps = 16;
 /// Contacts at nodes of meshes may overlap by this multiple of RestingContacts::tight_gap.
 inline constexpr double kMeshOverlap = 800;
@@ -53,7 +53,7 @@ PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contac
   return distance;
 }
 
-/// Returns the depth of a contact that need not be separated, m.
+/// Returns the depth (m) up to which an overlap at a contact is not separated.
 PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) const {
   if (is_at_nodes(contact)) return contact_separation::kMeshOverlap * resting_.tight_gap(contact);
   double size = 0;
@@ -122,7 +122,7 @@ PLIANT_INLINE bool ContactResolution::is_separated(const std::vector<Contact>& c
   });
 }
 
-/// Returns the contacts near a state, with those of bodies that a separation in a step may push into others.
+/// Returns the contacts at a state, and the contacts between bodies that a separation may push together.
 PLIANT_INLINE std::vector<Contact> ContactResolution::contacts_to_separate(const StepContext& step) {
   const State& state = step.state;
   std::vector<Contact> found = resting_.near(state, step.t);
@@ -160,8 +160,9 @@ PLIANT_INLINE void ContactResolution::separate(StepContext& step, const std::vec
       dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
 }
 
-/// Stage 7 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
-/// that this separation pushes into others are separated completely. Records the overlaps that remain.
+/// Stage 7 of a step: separates bodies that overlap, by at most the distance that a step of h seconds allows
+/// (largest_separation()). Bodies that this separation pushes into others are separated completely. Records
+/// the overlaps that remain.
 PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
   for (int i = 0;; ++i) {
     const std::vector<Contact>& near = resting_.near(step.state, step.t);

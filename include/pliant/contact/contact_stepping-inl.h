@@ -22,11 +22,11 @@ namespace pliant {
 
 namespace contact_stepping {
 
-/// Rebounds slower than this are left out (FreeMotion::min_impact_speed). Unit: the speed that gravity gives
-/// a body in a step.
+/// Rebounds slower than this are ignored (FreeMotion::min_impact_speed). Unit: the speed that gravity gives a
+/// body in a step.
 inline constexpr double kMinImpactSpeed = 1e-3;
-/// If impulses are predicted, contacts without restitution rest up to this normal speed, in the same unit.
-/// A contact point that rolls leaves a normal speed of second order in the length of the step.
+/// If impulses are predicted, contacts without restitution rest up to this normal speed, in the unit of
+/// kMinImpactSpeed. Rolling causes a normal speed of second order in the length of the step.
 inline constexpr double kMaxInelasticSpeed = 0.1;
 /// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up
 /// to the speed that gravity gives a body in a step.
@@ -34,17 +34,17 @@ inline constexpr double kResidualFactor = 8;
 /// Impacts are located if at most kMaxLocatedPairs pairs meet in a motion, in models with few moving parts
 /// (Model::has_few_moving_parts). To locate an impact, the step of all parts is repeated several times.
 inline constexpr std::size_t kMaxLocatedPairs = 3;
-/// The step fails if a motion in which no part passes through another would be at most 1 / kMaxMotions of the
-/// rest of the step.
+/// The step fails if the longest motion in which no part passes through another is at most 1 / kMaxMotions of
+/// the rest of the step.
 inline constexpr double kMaxMotions = 1e4;
 /// In a cluster (a model of some parts of a body) changes of friction are located only for tolerances below
-/// this. For other tolerances step doubling alone controls the error, which takes a third of the time for
-/// heaps.
+/// this. For other tolerances step doubling alone controls the error, because this takes only a third of the
+/// time for heaps.
 inline constexpr double kFrictionTolerance = 1e-4;
 /// Largest number of impacts that are located in a step.
 inline constexpr int kMaxLocatedImpacts = 200;
-/// At the time of a located impact, a pair that neither rested nor is one of the located pairs touches if its
-/// gap is at most this share of the largest gap of a resting contact.
+/// At the time of a located impact, other pairs may touch, too. If such a pair did not rest before, it
+/// touches if its gap is at most this share of the largest gap of a resting contact.
 inline constexpr double kTouchingGap = 1e-6;
 
 /// With a tolerance, residual_speed() is zero up to this speed, in the unit of kMinImpactSpeed; without a
@@ -53,9 +53,9 @@ inline constexpr double kTouchingGap = 1e-6;
 inline constexpr double kMinResidualSpeed = 1e-5;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
-/// m/s. It is rounded down to a power of two, so that it rarely changes and the result of the last contact
-/// search stays valid. It is 0 if it is at most min_share times gravity_speed. gravity_speed: speed that
-/// gravity gives a body in the step, m/s.
+/// m/s. The result is rounded down to a power of two, so that it rarely changes and the result of the last
+/// contact search stays valid. The result is 0 if the speed is at most min_share times gravity_speed.
+/// gravity_speed: speed that gravity gives a body in the step, m/s.
 inline double residual_speed(double residual, double gravity_speed, double min_share) {
   const double speed = std::min(kResidualFactor * residual, gravity_speed);
   if (!(speed > min_share * gravity_speed)) return 0;
@@ -317,9 +317,9 @@ PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) cons
 }
 
 /// Stage 3: finds the contacts at the end of the motion, and assigns predicted impulses to them. Returns
-/// false, and restores the state at its start, if the motion was too long, woke sleeping parts, brought a
-/// part that deforms locally near another body without a prediction, or if impulses were predicted and an
-/// impact is to be located.
+/// false, and restores the state at the start of the motion, in four cases: the motion was too long; it woke
+/// sleeping parts; it brought a part that deforms locally near another body, which was not predicted;
+/// impulses were predicted and an impact is to be located.
 PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   State& state = progress.step.state;
   const FreeMotion& free = motion.free;
@@ -344,9 +344,9 @@ PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   return !wake_touched(motion.contacts, free, state);
 }
 
-/// Assigns the predicted impulses of a motion to the contacts at its end, and takes back those of pairs that
-/// no longer touch. Returns false if an impact is to be located: the motion is to be repeated, and the rest
-/// of the step predicts no impulses.
+/// Assigns the predicted impulses of a motion to the contacts at its end, and subtracts the predicted
+/// impulses of pairs that no longer touch. Returns false if an impact is to be located: the motion is to be
+/// repeated, and the rest of the step predicts no impulses.
 PLIANT_INLINE bool ContactStepping::complete_prediction(Motion& motion, Progress& progress) {
   for (;;) {
     if (!impacts_to_locate(motion).empty()) {
@@ -413,7 +413,7 @@ PLIANT_INLINE void ContactStepping::record_resting(const Motion& motion, double 
 }
 
 /// Returns the impacts of the motion, one for each pair, if the model has few moving parts and at most
-/// kMaxLocatedPairs pairs meet; otherwise none.
+/// kMaxLocatedPairs pairs meet; otherwise an empty list.
 PLIANT_INLINE std::vector<Contact> ContactStepping::impacts_to_locate(const Motion& motion) const {
   std::vector<Contact> impacts;
   if (!few_parts_) return impacts;

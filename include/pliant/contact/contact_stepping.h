@@ -1,8 +1,8 @@
-// Steps of bodies that touch, around any method of integration. A step without contact is the step of the
-// method. An impact is located in time, and its impulses act at that time. At resting contacts, impulses
-// stand for forces that are constant over the step, so that resting and sticking bodies keep their
-// coordinates to rounding. If many parts can move, or many impacts happen within one motion (the step or a
-// part of it), the impacts are resolved together at the end of the motion (README.md of this folder).
+// Steps with contact, for any method of integration. A step without contact is the step of the method. An
+// impact is located in time, and its impulses act at that time. At resting contacts, impulses stand for
+// forces that are constant over the step, so that resting and sticking bodies keep their coordinates to
+// rounding. If many parts can move, or many impacts happen within one motion (the step or a part of it), the
+// impacts are resolved together at the end of the motion (README.md of this folder).
 #pragma once
 
 #include <vector>
@@ -23,8 +23,8 @@ class ContactStepping {
  public:
   /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder and Sleeping.
   explicit ContactStepping(const Dynamics& dynamics) : ContactStepping(dynamics, nullptr) {}
-  /// Makes the stepping of a model of some parts. It shares surfaces with the finder of the whole body, which
-  /// must outlive it.
+  /// Makes an object for a model that contains some parts of a body. It shares surfaces with `whole`, the
+  /// finder of the whole body, whose model must outlive it.
   ContactStepping(const Dynamics& dynamics, const ContactFinder& whole) : ContactStepping(dynamics, &whole) {}
 
   /// Begins a step with an empty record, to which several calls of step() may append. undo_step() replaces
@@ -38,25 +38,26 @@ class ContactStepping {
   /// stage times here.
   void absorb(ContactStepping& cluster);
   /// Advances q, v, work, modes and contact cache of step.state by state.h seconds, or less with a tolerance.
-  /// Returns the length of the step, s. The caller increments State::step. tolerance: that of the simulation,
-  /// or 0 if there is none. With a tolerance the step ends at the first event after its start: an impact, or
-  /// a change of friction (FrictionEvents). In models with few moving parts it also ends after a motion with
-  /// resting contacts, or with contacts whose time was not located. A step in which a method with implicit
-  /// elasticity brings parts that deform locally near other bodies is of first order; it is repeated as two
-  /// halves and extrapolated (extrapolate_soft_step).
+  /// Returns the length of the step, s. The caller increments State::step. tolerance: the tolerance of the
+  /// simulation, or 0 if it has no tolerance. With a tolerance the step ends at the first event after its
+  /// start: an impact, or a change of friction (FrictionEvents). In models with few moving parts it also ends
+  /// after a motion with resting contacts, or with contacts whose time was not located. If a method with
+  /// implicit elasticity brings parts that deform locally near other bodies, the step is of first order; it
+  /// is repeated as two halves and extrapolated (extrapolate_soft_step).
   double step(Integrator& method, StepContext& step, double tolerance = 0);
-  /// Repeats a step with resting or unlocated contacts as two half steps. If both results agree in modes and
-  /// contacts and the error is at most 1, extrapolates from both (Richardson). Impulses that stand for forces
-  /// over a step have an error of O(h^2), which the difference of both results estimates; the error of the
-  /// extrapolation is O(h^3). With a tolerance below step_doubling::kThirdsTolerance, the step is also
-  /// repeated in thirds, and the extrapolation from all three results has an error of O(h^4). If the step
-  /// ended at an event, the halves locate the event themselves and are not extrapolated. initial: the state
-  /// at the start, with the length of the step before any event shortened it. length: the actual length of
-  /// the step, s. before: the counters before the step. step.state: on input the state at the end of the
-  /// step, on output that of the last repetition. Returns the larger of two errors, in tolerances, and the
-  /// length of the last repetition. The first is that of contact, the second that of the method. If the
-  /// bodies in contact were at rest and have no prescribed motion, the error is 0 and the step is not
-  /// repeated. If a repetition fails, the error is infinite.
+  /// Repeats a step with resting contacts, or with contacts whose time was not located, as two half steps. If
+  /// both results agree in modes and contacts and the error is at most 1, extrapolates from both
+  /// (Richardson). Impulses that stand for forces over a step have an error of O(h^2), which the difference
+  /// of both results estimates; the error of the extrapolation is O(h^3). With a tolerance below
+  /// step_doubling::kThirdsTolerance, the step is also repeated in thirds, and the extrapolation from all
+  /// three results has an error of O(h^4). If the step ended at an event, the halves locate the event
+  /// themselves and are not extrapolated. initial: the state at the start, with the length of the step before
+  /// any event shortened it. length: the actual length of the step, s. before: the counters before the step.
+  /// step.state: on input the state at the end of the step, on output the state at the end of the last
+  /// repetition. Returns the error, in tolerances, and the length of the last repetition. The error is the
+  /// larger of the error of contact and the error of the method. If the bodies in contact were at rest and
+  /// have no prescribed motion, the error is 0 and the step is not repeated. If a repetition fails, the error
+  /// is infinite.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
                              const State& initial, double length, const StepCounters& before);
 
@@ -140,10 +141,10 @@ class ContactStepping {
     return step.counters.impacts > before.impacts || at_friction_event_;
   }
   void restart_step(StepContext& step, const State& initial, const StepCounters& before);
-  /// A result with longer steps, from which the finest result is extrapolated.
+  /// A result with longer steps, which is needed to extrapolate from the finest result.
   struct Coarse {
     State state;   ///< its coordinates and velocities; nodes may have the values of the finest result
-    double share;  ///< the finest result moves on by this share of its difference from the state
+    double share;  ///< the extrapolation adds this multiple of (finest result - state)
     const State& computed;  ///< the unchanged result, with its works
   };
   StepError step_by_thirds(Integrator& method, StepContext& step, const ErrorScale& scale, const Whole& whole,

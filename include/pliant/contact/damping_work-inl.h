@@ -1,7 +1,7 @@
 // Function bodies of damping_work.h: Simpson's rule for a power that is quadratic in velocities that are
 // linear in time,
 //   W = h / 6 (P(v_0) + 4 P((v_0 + v_1) / 2) + P(v_1)).
-// P(v_0) is the same with and without impulses, unless a part of the impulses acts at the start.
+// P(v_0) has equal values with and without impulses, unless a part of the impulses acts at the start.
 #pragma once
 
 #include <pliant/contact/damping_work.h>
@@ -18,8 +18,8 @@ namespace pliant {
 
 namespace damping_work {
 
-/// Factors of P in the middle and at the end of a motion of the formula above, without h. Together with that
-/// of the start their sum is 1.
+/// Factors of P in the formula above, without h, in the middle and at the end of a motion. The sum of these
+/// two factors and the factor at the start is 1.
 struct Weights {
   double middle, end;
   double start() const { return 1 - middle - end; }
@@ -28,7 +28,7 @@ inline constexpr Weights kLinear{2.0 / 3, 1.0 / 6};
 
 /// Returns the factors for velocities that change in time as exp(-nu t) by a drag nu, 1/s. x: nu h.
 inline Weights of_drag(double x) {
-  constexpr double small = 1e-3;  // the formulas lose digits below it; the series has an error of x^2 / 100
+  constexpr double small = 1e-3;  // below it the formulas lose digits; the series has an error of x^2 / 100
   if (x < small) return {kLinear.middle, kLinear.end + x / 12};
   const double relaxed = -std::expm1(-x);
   const double m_1 = 1 / relaxed - 1 / x,

@@ -14,17 +14,18 @@ class DampingWork {
   /// Velocities at the start of the motion, which must outlive the object.
   struct Starts {
     const VecX<double>& free;       ///< with predicted impulses (predicted_impulses.h)
-    const VecX<double>* corrected;  ///< before these impulses; nullptr: there are none
+    const VecX<double>* corrected;  ///< before predicted impulses; nullptr: there are none
   };
-  /// free: the state at the end, at time t (s), of a motion of h seconds without impulses at its end. parts:
-  /// those that the impulses move, sorted. Drag and damping of parts that deform locally are left out.
+  /// free: the state at the end of a motion of h seconds, before the impulses at its end. t: time at the end,
+  /// s. parts: the parts that the impulses move, sorted. Drag and damping of parts that deform locally are
+  /// left out.
   DampingWork(const Dynamics& dynamics, const Starts& starts, const State& free,
               const std::vector<int>& parts, double t, double h);
   /// Whether a moved part has drag, damping or a damper.
   bool acts() const { return !damped_.empty() || !springs_.empty() || !drives_.empty(); }
-  /// Corrects the works of damping, drag and dampers of springs and drives in the state after the impulses.
-  /// All other forces, and the forces of the impulses, are assumed constant in time. The work of moving
-  /// anchors at dampers is not corrected.
+  /// Corrects the works of damping, drag and dampers of springs and drives. after: the state after the
+  /// impulses. All other forces, and the forces of the impulses, are assumed constant in time. The work of
+  /// moving anchors at dampers is not corrected.
   void correct(State& after);
 
  private:
@@ -40,7 +41,7 @@ class DampingWork {
   std::vector<int> damped_;                  // the moved parts with drag or damping
   std::vector<const SpringModel*> springs_;  // with dampers, at moved parts
   std::vector<const DriveModel*> drives_;    // with dampers, at moved parts
-  std::vector<int> at_dampers_;  // the parts at these springs and drives, and those that they read
+  std::vector<int> at_dampers_;  // the parts at these springs and drives, and the parts that these read
   Workspace<double> work_;
   Works without_impulses_ = Works::Zero();
 };

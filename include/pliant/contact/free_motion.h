@@ -13,7 +13,7 @@ struct BeforePrediction {
 
 struct FreeMotion {
   State before;                  ///< state at the start, after the predicted impulses
-  BeforePrediction unpredicted;  ///< its values before these impulses
+  BeforePrediction unpredicted;  ///< velocities and works before these impulses
   double begin = 0;              ///< time of the start, s
   double h = 0;                  ///< length, s
   double reach = 0;  ///< a constant acceleration a displaces by reach * a * h^2 (Integrator::reach)
@@ -24,13 +24,13 @@ struct FreeMotion {
   /// (State::contact_residual).
   double max_resting_speed = 0;
   /// Largest normal speed of a resting contact that is smooth (ContactFinder::is_smooth) and has no
-  /// restitution, m/s. Its impacts have no rebound and end at rest. It is max_resting_speed if no impulses
-  /// are predicted.
+  /// restitution, m/s. Impacts at such a contact have no rebound and end at rest. If no impulses are
+  /// predicted, this speed is equal to max_resting_speed.
   double max_inelastic_speed = 0;
 
   double end() const { return begin + h; }
-  /// Returns a time, s. Impulses at the end of the motion that stand for forces constant during the motion
-  /// displace bodies by this time multiplied by the change of velocity.
+  /// Returns Contact::since (s) of an impulse at the end of the motion that stands for a constant force
+  /// during the motion. The impulse displaces bodies by this time multiplied by the change of velocity.
   double force_time() const { return reach * h; }
   bool has_predicted() const { return unpredicted.v.size() > 0; }
   /// Returns the state at the start before the predicted impulses.

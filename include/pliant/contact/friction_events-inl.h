@@ -1,5 +1,5 @@
 // Function bodies of friction_events.h. first() lists the steps of the search; locate_end() finds the time at
-// which a positive function of time ends.
+// which a function of time ceases to be positive.
 #pragma once
 
 #include <pliant/contact/friction_events.h>
@@ -20,24 +20,25 @@ namespace pliant {
 
 namespace friction_events {
 
-/// Slides shorter than kSlowInTolerances times the tolerance, in sizes of the smaller part, do not matter. A
+/// Slides shorter than kSlowInTolerances times the tolerance, in sizes of the smaller part, are ignored. A
 /// contact sticks if its speed is at most the sum of three speeds: this distance times slow_rate(),
 /// kSlowInResiduals times the residual of the last contact solution, and kSlowInRounding rounding errors of
 /// the largest speed.
 inline constexpr double kSlowInTolerances = 1e-2, kSlowInResiduals = 8, kSlowInRounding = 64;
-/// A probe is a motion of this share of the motion that is examined. It shows whether contacts that stick at
-/// its start begin to slip.
+/// A probe is a motion with this share of the length of the examined motion. It shows whether contacts that
+/// stick at the start of the probe begin to slip.
 inline constexpr double kProbe = 1e-3;
 /// A contact slips in a probe if its speed grows by more than this share of the largest contact velocity
 /// without impulses. Its speed at the start of the probe is not zero if the contact point moves on the part.
 inline constexpr double kProbeSlip = 1e-7;
-/// Sticking contacts that use at most this share of the largest friction during a motion are not probed: a
-/// force of friction that grows linearly from zero, with this mean, does not reach its limit in the motion.
+/// Sticking contacts whose mean friction in a motion is at most this share of the largest friction are not
+/// probed. If the friction grows linearly from zero, it ends at twice its mean and does not reach the limit.
 inline constexpr double kSafeUse = 0.45;
-/// A contact begins to slip where its acceleration is at most this share of that at the end of the motion.
+/// A contact begins to slip where its acceleration is at most this share of its acceleration at the end of
+/// the motion.
 inline constexpr double kSlipTolerance = 1e-6;
-/// Loads are constant if accelerations at the start and at this share of the motion differ by at most this
-/// share of the largest acceleration.
+/// Loads are constant if accelerations at the start and at the share kSampledLoads of the motion differ by at
+/// most kEqualLoads times the largest acceleration.
 inline constexpr double kSampledLoads = 0.618, kEqualLoads = 1e-9;
 /// Accuracy of the time of an event, as a share of the motion.
 inline constexpr double kTimeTolerance = 1e-14;
@@ -160,8 +161,8 @@ PLIANT_INLINE void FrictionEvents::find_starts(const Examined& motion, double to
     if (start.speed <= slow_) start.direction.setZero();
 }
 
-/// Regards contacts as sticking from the start if they stick at the end of the motion, and if the distance by
-/// which they slide cannot matter. The extrapolation of a step leaves such speeds.
+/// Treats contacts as sticking from the start if they stick at the end of the motion, and if they slide by at
+/// most short_ (m). The extrapolation of a step leaves such small speeds.
 PLIANT_INLINE void FrictionEvents::drop_short_slides(const Examined& motion, const Trial& end) {
   for (const End& e : end.ends)
     if (starts_[at(e.start)].speed * motion.free.h <= short_ && e.slip.norm() <= slow_)
@@ -173,7 +174,8 @@ PLIANT_INLINE Vec3<double> FrictionEvents::offset(const Contact& contact, const 
   return contact.x - dynamics_.model().position(state, contact.a.part, t);
 }
 
-/// Returns the number of the nearest contact of the same pair at the start of the motion; -1: none.
+/// Returns the number of the nearest contact of the same pair at the start of the motion; -1 if there is
+/// none.
 PLIANT_INLINE int FrictionEvents::start_of(const Contact& contact, const State& state, double t) const {
   const Vec3<double> x = offset(contact, state, t);
   int nearest = -1;
@@ -204,13 +206,13 @@ PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion
   return result;
 }
 
-/// Returns the first tau seconds of the motion.
+/// Returns the trial motion that consists of the first tau seconds of the motion.
 PLIANT_INLINE FrictionEvents::Trial FrictionEvents::trial(const Examined& motion, double tau) {
   return trial(motion, motion.free.before, motion.free.begin, tau, motion.resting);
 }
 
-/// Returns a short motion from the end of another motion. At a kink (Model::next_kink) it has the loads
-/// before the kink: the loads after the kink act in the next step only.
+/// Returns a short motion from the end of another motion. At a kink (Model::next_kink) the short motion has
+/// the loads before the kink, because the loads after the kink act in the next step only.
 PLIANT_INLINE FrictionEvents::Trial FrictionEvents::probe(const Examined& motion, const Trial& from) {
   const Model& model = dynamics_.model();
   const double h = friction_events::kProbe * motion.free.h, end = from.free.end();
@@ -234,7 +236,7 @@ PLIANT_INLINE double FrictionEvents::slip_before(const FreeMotion& free, const s
 }
 
 /// Computes the impulses at the contacts at the end of a motion, and applies them. resting: the contacts at
-/// its start. The start values of the impulses are those of the step.
+/// its start. The search for the impulses starts from the contact cache, as in the step itself.
 PLIANT_INLINE void FrictionEvents::resolve(const Examined& motion, const std::vector<Contact>& resting,
                                            Trial& trial) {
   State& state = trial.state;
@@ -298,7 +300,7 @@ PLIANT_INLINE bool FrictionEvents::are_forces_constant(const Examined& motion) {
          friction_events::kEqualLoads * friction_events::largest(model, v_dot);
 }
 
-/// Finds the contacts that begin to slip at the start of the motion: they slide from the start.
+/// Finds the contacts that begin to slip at the start of the motion, and sets their directions of sliding.
 PLIANT_INLINE void FrictionEvents::find_directions(const Examined& motion) {
   const Trial begin = trial(motion, friction_events::kProbe * motion.free.h);
   for (const End& e : begin.ends)
@@ -315,7 +317,8 @@ PLIANT_INLINE double FrictionEvents::least_sliding(const Trial& trial) const {
   return least;
 }
 
-/// Returns the time from the start of the motion until a sliding contact stops or reverses, s.
+/// Returns the time from the start of the motion until a sliding contact stops or reverses, s; nothing if no
+/// contact does so before `end`, the end of the motion.
 PLIANT_INLINE std::optional<double> FrictionEvents::stop(const Examined& motion, const Trial& end) {
   auto sliding = [&](double tau) { return least_sliding(trial(motion, tau)); };
   const double h = motion.free.h, target = 0.5 * slow_;
@@ -335,7 +338,7 @@ PLIANT_INLINE std::optional<double> FrictionEvents::stop(const Examined& motion,
 }
 
 /// Returns the largest acceleration with which sticking contacts begin to slip after a trial motion, m/s^2,
-/// or 0. Slip that a probe allows is subtracted: the result is continuous where slip begins.
+/// or 0. The slip that a probe allows is subtracted, so that the result is continuous where slip begins.
 PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, const Trial& trial) {
   const Trial after = probe(motion, trial);
   double fastest = 0;
@@ -345,8 +348,8 @@ PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, c
   return fastest;
 }
 
-/// Returns the time from the start of the motion until a sticking contact begins to slip, s, if it does so
-/// before the end of a trial of the motion.
+/// Returns the time from the start of the motion until a sticking contact begins to slip, s; nothing if no
+/// contact does so before the end of the trial motion `end`.
 PLIANT_INLINE std::optional<double> FrictionEvents::slip(const Examined& motion, const Trial& end) {
   const bool any_stick =
       std::any_of(starts_.begin(), starts_.end(), [](const Start& s) { return s.sticks(); });

@@ -32,17 +32,18 @@ class FrictionEvents {
     const std::vector<Contact>& resting;   ///< resting contacts at its start
     const std::vector<Contact>& contacts;  ///< contacts at its end
   };
-  /// Returns the time from the start of the motion to the first event of its resting contacts that is found,
-  /// s; none if there is no event before the end of the motion. A contact that stops and slides on in the
-  /// same direction within the motion has no event that is found. tolerance: of the simulation; slower
-  /// sliding than this tolerance allows is treated as sticking. Contacts at nodes of meshes have no events.
+  /// Returns the time from the start of the motion to the first event that is found at its resting contacts,
+  /// s. Returns nothing if no event is found before the end of the motion. If a contact stops and then slides
+  /// in the same direction again within the motion, the search does not find this event. tolerance: tolerance
+  /// of the simulation; a contact that slides more slowly than the tolerance allows is treated as sticking.
+  /// Contacts at nodes of meshes have no events.
   std::optional<double> first(const Examined& motion, double tolerance);
 
  private:
   /// A resting contact at the start of the motion.
   struct Start {
     PairKey pair;
-    double speed;            ///< of sliding, m/s
+    double speed;            ///< tangential speed, m/s
     Vec3<double> offset;     ///< from part a to the contact point, m, world
     Vec3<double> direction;  ///< unit vector of sliding; zero: the contact sticks
     bool sticks() const { return direction.isZero(0); }
@@ -91,7 +92,7 @@ class FrictionEvents {
   std::unique_ptr<Integrator> method_;
   Workspace<double> work_;
   std::vector<Start> starts_;
-  double short_ = 0;  ///< shorter slides do not matter, m
+  double short_ = 0;  ///< shorter slides are ignored, m
   double slow_ = 0;   ///< slower sliding is treated as sticking, m/s
 };
 

@@ -16,11 +16,11 @@ namespace pliant {
 
 namespace impact_sequence {
 
-/// Largest number of impacts in a sequence: kMaxImpacts, and kMaxImpactsOfPair more for each pair.
+/// Largest number of impacts in a sequence: kMaxImpacts plus kMaxImpactsOfPair for each pair.
 inline constexpr std::size_t kMaxImpacts = 1000, kMaxImpactsOfPair = 10;
-/// Approaches are no impacts if their speed, as a share of the largest one of connected bodies at the start,
-/// is at most kRounding, or kLeftPerTolerance times the tolerance of contact. This tolerance refers to the
-/// sum of approach and rebound, and the rebound is at most as fast as the approach.
+/// Let a be the largest approach speed of connected bodies at the start. An approach is not treated as an
+/// impact if its speed is at most kRounding * a, or at most kLeftPerTolerance * (tolerance of contact) * a.
+/// The tolerance refers to the sum of approach and rebound, which is at most twice the approach speed.
 inline constexpr double kRounding = 1e-10, kLeftPerTolerance = 2;
 /// Approach speeds that differ by at most this share, or by kEqualResiduals times the residual of the
 /// impulses in this step, are equal.
@@ -53,8 +53,8 @@ PLIANT_INLINE std::vector<ImpactSequence::Pair> ImpactSequence::pairs_of(
   return pairs;
 }
 
-/// Sets the slowest impact of each pair: a share of the largest approach speed among the pairs that bodies
-/// connect with it, but at least min_speed.
+/// Sets Pair::slowest of each pair: a share of the largest approach speed among all pairs that bodies connect
+/// with this pair, but at least min_speed (m/s).
 PLIANT_INLINE void ImpactSequence::set_slowest(const Model& model, double min_speed,
                                                std::vector<Pair>& pairs) {
   const double tolerance = model.body().contact.tolerance.value_or(0),
@@ -77,8 +77,9 @@ PLIANT_INLINE void ImpactSequence::set_slowest(const Model& model, double min_sp
   for (std::size_t k = 0; k < n; ++k) pairs[k].slowest = std::max(min_speed, share * largest_of(k));
 }
 
-/// Returns the contacts of all pairs that approach at least with the speed `least`, and sets their rebounds.
-/// In the pairs the corrections of these rebounds become zero: the next impact follows Newton's law.
+/// Returns the contacts of all pairs that approach at least with the speed `least` (m/s), and sets their
+/// rebounds. Sets the corrections of these rebounds (Contact::rebound in `pairs`) to zero, because the next
+/// impact of the pair follows Newton's law without a correction.
 PLIANT_INLINE std::vector<Contact> ImpactSequence::next_impacts(const State& state, double least,
                                                                 double min_speed,
                                                                 std::vector<Pair>& pairs) const {

@@ -1,6 +1,6 @@
-// Sequential impacts (ImpactOrder::sequential): where several bodies touch, impacts of two bodies follow each
-// other at one instant. The pair with the largest approach speed comes first, until no pair approaches. The
-// paper has no such law.
+// Sequential impacts (ImpactOrder::sequential): where several bodies touch, impacts of pairs of bodies follow
+// each other at one instant. The pair with the largest approach speed is always resolved next, until no pair
+// approaches. The paper has no such law.
 #pragma once
 
 #include <vector>
@@ -18,13 +18,14 @@ class ImpactSequence {
 
   /// Resolves the impacts at some contacts at step.t pair by pair. Each impact satisfies Newton's law and
   /// Coulomb's law at all contacts of its pair. Contact::rebound on input is a correction of the rebound in
-  /// the first impact of the contact, m/s: (1 + e) times the normal velocity that accelerations have given
-  /// its sides since they met. Pairs that approach equally fast, except for the residual of the impulses, are
-  /// resolved together, so that symmetric motions stay symmetric. h: see ResolvedMotion. min_speed: slower
-  /// approaches and rebounds are no impacts, m/s. Neither are approaches that ContactSettings::tolerance
-  /// lets the impulses leave. A sequence has at most 1000 impacts and ten more for each pair. If pairs still
-  /// approach afterwards, StepCounters::contact_cutoffs grows by one. Without restitution there is no
-  /// sequence: it would converge slowly to impulses that Newton's law at all contacts at once gives directly.
+  /// the first impact of the contact, m/s: (1 + restitution) times the normal velocity that accelerations
+  /// have given its sides since they met. Pairs that approach equally fast, except for the residual of the
+  /// impulses, are resolved together, so that symmetric motions stay symmetric. h: see ResolvedMotion.
+  /// min_speed: approaches and rebounds slower than this (m/s) are ignored. Approaches within
+  /// ContactSettings::tolerance are ignored, too. A sequence has at most 1000 impacts plus ten for each pair.
+  /// If pairs still approach afterwards, StepCounters::contact_cutoffs grows by one. Without restitution
+  /// there is no sequence: it would converge slowly to impulses that Newton's law at all contacts at once
+  /// gives directly.
   void resolve(StepContext& step, const std::vector<Contact>& contacts, double h, double min_speed);
 
  private:
@@ -32,7 +33,7 @@ class ImpactSequence {
   struct Pair {
     std::vector<Contact> contacts;
     double approach;  ///< largest approach speed of a contact, m/s
-    double slowest;   ///< slower approaches are no impacts, m/s
+    double slowest;   ///< approaches up to this speed are not treated as impacts, m/s
 
     bool has_impact() const { return approach > slowest; }
   };

@@ -25,14 +25,14 @@ inline constexpr int kMaxTrials = 60;
 /// The sides of an impact are apart at the start of the motion if their gap is larger than this, in sizes of
 /// the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
-/// Sides whose gap is not positive at the start touch all the time if the dense output shows no gap at the
-/// times h 2^-k for k from 1 to kMaxHalvings, or if steps of the method then find none. h: length of the
-/// motion.
+/// Sides whose gap is not positive at the start are assumed to touch all the time in two cases: the dense
+/// output shows no gap at the times h 2^-k for k from 1 to kMaxHalvings, or steps of the method find no gap
+/// either. h: length of the motion.
 inline constexpr int kMaxHalvings = 20;
 /// Accuracy of the time on the dense output, as a share of the motion.
 inline constexpr double kPathTolerance = 1e-9;
 /// The rate of a gap is computed from times that differ by more than this, as a share of the motion. For
-/// nearer times the difference of the gaps is rounding.
+/// closer times the difference of the gaps is mostly rounding error.
 inline constexpr double kMinRateInterval = 1e-6;
 /// After this number of secant steps the search halves the bracket.
 inline constexpr int kMaxSecants = 8;
@@ -124,7 +124,7 @@ class ImpactGap {
     method_.step(part);
     reached_ = tau;
   }
-  /// Returns the smallest gap at a time tau into the motion, m; the state is there afterwards.
+  /// Moves the state of the step to a time tau into the motion, s, and returns the smallest gap there, m.
   double at_time(double tau) {
     move_to(tau);
     return at_state(step_.state, motion_.begin + tau);
@@ -140,8 +140,8 @@ class ImpactGap {
   double size_ = std::numeric_limits<double>::infinity(), largest_ = 0;
 };
 
-/// Returns whether the gap of sides that touch at the start of a motion exceeds clear_gap (m) on the dense
-/// output at one of the times h 2^-k for k from 1 to `halvings`.
+/// Returns whether sides that touch at the start of a motion separate on the dense output: their gap exceeds
+/// clear_gap (m) at one of the times h 2^-k for k from 1 to `halvings`.
 template <class Gap>
 bool separates_on_path(Gap&& gap_on_path, double h, int halvings, double clear_gap) {
   for (int k = 1; k <= halvings; ++k)
@@ -175,8 +175,9 @@ Bracket bracket_impact(ImpactGap& gap, Gap&& gap_on_path, double gap_at_start, d
 
 /// Returns the exact time of impact by the secant method with steps of the method of integration, within a
 /// bracket; the state is at this time afterwards. approximate: the time and rate on the dense output. If the
-/// sides overlap deeply enough at the end of the bracket, the time is that of a small overlap: points that
-/// graze the other side then do not end the search before other points meet it, a little later and faster.
+/// sides overlap deeply enough at the end of the bracket, the result is the time of a small overlap, not of a
+/// zero gap. Otherwise a point that only grazes the other side could end the search, although another point
+/// meets that side a little later and faster.
 inline double refine_impact(ImpactGap& gap, Bracket bracket, double h, TimeAndRate approximate) {
   const double exact = kGapTolerance * gap.size(), overlap = bracket.f_high < -exact ? 0.5 * exact : 0,
                accuracy = overlap > 0 ? 0.5 * overlap : exact;

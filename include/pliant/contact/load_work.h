@@ -17,11 +17,11 @@ class LoadWork {
   double work_until(double t, const State& to);
 
  private:
-  /// The places of the loads that displacements change.
+  /// The positions at which the loads act, before or after a displacement.
   struct Places {
     std::vector<Vec3<double>> forces;                    // attachment point of each force, m, world
     std::vector<std::vector<Vec3<double>>> distributed;  // ports of each distributed force, m, world
-    std::vector<Mat3<double>> rotations;                 // both parts of each torque, body to world
+    std::vector<Mat3<double>> rotations;                 // of both parts of each torque, body to world
     std::vector<Vec3<double>> springs;                   // from end a to end b of each muscle, m, world
     std::vector<double> drives;                          // coordinate of each drive that is not passive
   };

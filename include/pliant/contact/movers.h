@@ -56,8 +56,8 @@ class Movers {
   /// the number of local coordinates that belong to the mover, is not zero.
   int first_local(const Mover& mover, int part) const;
   int n_local(int part) const { return n_local_[static_cast<std::size_t>(part)]; }
-  /// Returns the velocities of all movers, n_x() numbers. The state may be earlier than the evaluation
-  /// `work`.
+  /// Returns the velocities of all movers, n_x() numbers. work: the evaluation of their parts, which may
+  /// belong to a later state than `state`.
   VecX<double> velocities(const State& state, const Workspace<double>& work) const;
 
  private:
@@ -67,7 +67,7 @@ class Movers {
   std::vector<Mover> all_;
   int n_x_ = 0;
   std::vector<int> n_local_;      // of each part
-  std::vector<int> part_movers_;  // number of the mover of each part; -1: none yet
+  std::vector<int> part_movers_;  // number of the mover of each part; -1: not requested yet
   /// Number of the mover of each node of each part; empty if no node has a mover.
   std::vector<std::vector<int>> node_movers_;
 };

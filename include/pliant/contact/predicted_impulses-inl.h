@@ -23,7 +23,7 @@ namespace predicted_impulses {
 /// Impulses are not predicted if they would move the sides of a contact by more than this share of the size
 /// of the smaller body in the motion, or by more than ContactFinder::max_resolved_depth.
 inline constexpr double kMaxLift = 0.05;
-/// Contacts are predicted up to this overlap, in sizes of the smaller body.
+/// Impulses are predicted only at contacts with at most this overlap, in sizes of the smaller body.
 inline constexpr double kMaxOverlap = 1e-6;
 
 inline bool is_unpredicted(const Contact& contact) {
@@ -32,7 +32,8 @@ inline bool is_unpredicted(const Contact& contact) {
 
 /// Returns whether the motion of a part, or of a part of its island, has a bound besides contacts: a
 /// parameter is at a limit, a string is taut, or a joint follows a prescribed path. A predicted impulse could
-/// pass a one-sided bound, and its works do not contain that of a driven joint.
+/// move the part beyond a one-sided bound. The works of predicted impulses do not include the work of a
+/// driven joint.
 inline bool is_bounded(const Model& model, const State& state, int part) {
   const int island = model.parts()[at(part)].island;
   auto at_limit = [&](int i) {
@@ -48,8 +49,8 @@ inline bool is_bounded(const Model& model, const State& state, int part) {
                      [&](int j) { return state.joints[at(j)] == JointMode::closed; });
 }
 
-/// Returns whether a side of a contact moves faster than contacts at rest. At rest the impulse at the end of
-/// a motion alone is exact.
+/// Returns whether a side of a contact moves faster than motion.max_resting_speed. Bodies at rest need no
+/// prediction, because the whole impulse at the end of the motion is then exact.
 inline bool moves(const Model& model, const State& state, const FreeMotion& motion, const Contact& contact) {
   for (const int part : {contact.a.part, contact.b.part}) {
     if (part < 0 || model.parts()[at(part)].q0 < 0) continue;
@@ -68,7 +69,8 @@ inline void add_work(const Contact& contact, const Vec3<double>& mean, State& st
   state.work[static_cast<int>(Work::friction)] += p.dot(mean) - along;
 }
 
-/// Moves contacts from the start of a motion to its end, with their parts a.
+/// Moves contact points from the start of a motion to its end: each point moves with the part of side a.
+/// state: the state at the end.
 inline void follow_parts(const Model& model, const FreeMotion& motion, const State& state,
                          std::vector<Contact>& contacts) {
   for (Contact& contact : contacts) {
@@ -104,7 +106,7 @@ class PredictedBodies {
   std::vector<bool> excluded_;  // of each set
 };
 
-/// Excludes the bodies of parts at contacts that sleep or are bounded.
+/// Excludes the bodies of parts at contacts that sleep or are bounded (is_bounded()).
 inline void exclude_bounded(const Model& model, const State& state, const std::vector<Contact>& resting,
                             PredictedBodies& bodies) {
   std::vector<bool> examined(model.islands().size(), false);
@@ -118,8 +120,8 @@ inline void exclude_bounded(const Model& model, const State& state, const std::v
     }
 }
 
-/// Sets the predicted impulses of the resting contacts: those that their forces in the last step cause in
-/// motion.force_time() seconds.
+/// Sets the predicted impulses of the resting contacts: motion.force_time() times their forces in the last
+/// step.
 inline void predict(const Prediction& prediction, const FreeMotion& motion, PredictedBodies& bodies,
                     std::vector<Contact>& resting) {
   const State& state = prediction.step.state;
@@ -148,9 +150,10 @@ inline void predict(const Prediction& prediction, const FreeMotion& motion, Pred
       resting[k].predicted = motion.force_time() * cache[at(numbers[k])].force;
 }
 
-/// Sets the distances by which predicted impulses open contacts in a motion of h seconds. Removes the
-/// predicted impulses of bodies at which one of these distances is larger than kMaxLift allows, and returns
-/// whether there was one. changes: of the velocities at the contacts by all impulses, m/s.
+/// Sets the distances (Contact::lift) by which predicted impulses open contacts in a motion of h seconds. If
+/// a predicted impulse moves the sides of a contact by more than kMaxLift allows, removes the predicted
+/// impulses of its bodies. Returns whether any were removed. changes: changes of the velocities at the
+/// contacts by all predicted impulses, m/s.
 inline bool remove_large(const Prediction& prediction, double h, const ContactProblem& problem,
                          const std::vector<Vec3<double>>& changes, PredictedBodies& bodies,
                          std::vector<Contact>& contacts) {
@@ -217,7 +220,7 @@ PLIANT_INLINE void apply_predicted_impulses(const Prediction& prediction, FreeMo
 
 PLIANT_INLINE std::vector<Contact> assign_predicted_impulses(std::vector<Contact>& resting,
                                                              std::vector<Contact>& contacts) {
-  for (Contact& contact : contacts) {  // a followed contact has the values of that at the start
+  for (Contact& contact : contacts) {  // contacts of add_followed() are copies with the values at the start
     contact.predicted.setZero();
     contact.lift = 0;
   }

@@ -1,7 +1,6 @@
-// Predicted impulses: half of the impulses of resting contacts in a motion act at its start, predicted from
-// the forces of the last step. The impulses at its end complete them. Bodies that rest, roll or slide then
-// move in the motion nearly as the contacts let them, and the error of a step is of third order in its length
-// in place of second order.
+// Predicted impulses: half of the impulse of each resting contact acts at the start of a motion, predicted
+// from the contact force in the last step. The rest of the impulse acts at the end. With this division the
+// error of a step of bodies that roll or slide is of third order in its length, in place of second order.
 #pragma once
 
 #include <vector>
@@ -11,7 +10,7 @@
 
 namespace pliant {
 
-/// The objects that predict impulses and take them back.
+/// The objects that the functions below need.
 struct Prediction {
   StepContext& step;
   const ContactFinder& finder;
@@ -24,12 +23,13 @@ struct Prediction {
 /// conditions for a prediction.
 void apply_predicted_impulses(const Prediction& prediction, FreeMotion& motion,
                               std::vector<Contact>& resting);
-/// Assigns the predicted impulses of resting contacts at the start of a motion to the nearest resting
-/// contacts of the same pairs at its end, which are in the order of ContactFinder::find(). Removes the
-/// impulses of pairs without such a contact, and returns these contacts at the start with their impulses.
+/// Assigns each predicted impulse of a resting contact at the start of a motion to the nearest resting
+/// contact of the same pair at its end. contacts: those at the end, in the order of ContactFinder::find(). If
+/// a pair has no resting contact at the end, its impulses are removed from `resting`. Returns the contacts at
+/// the start that have lost their impulses, with these impulses.
 std::vector<Contact> assign_predicted_impulses(std::vector<Contact>& resting, std::vector<Contact>& contacts);
-/// Takes predicted impulses back at the end of a motion, with their displacements. Work::contact gets the
-/// change of energy. lost: contacts at the start of the motion, from assign_predicted_impulses().
+/// Subtracts predicted impulses and their displacements from the state at the end of a motion. Work::contact
+/// gets the change of energy. lost: contacts at the start of the motion, from assign_predicted_impulses().
 void take_back_predicted_impulses(const Prediction& prediction, const FreeMotion& motion,
                                   std::vector<Contact> lost);
 

@@ -26,14 +26,15 @@ inline constexpr double kFewMovedParts = 0.7;
 /// Predicted impulses open a contact by at most this multiple of Contact::lift, even if its force ceases in
 /// the motion.
 inline constexpr double kLifts = 2;
-/// A contact at the end of a motion and one of the same pair at its start are the same contact if their
+/// Two contacts of a pair, at the start and at the end of a motion, are treated as one contact if their
 /// contact points are nearer than this, in sizes of the smaller part.
 inline constexpr double kSamePoint = 0.2;
-/// The same distance if the impulse is predicted: such contacts are those of round parts, which roll. Their
-/// normals also have at least this scalar product.
+/// The corresponding distance for contacts with predicted impulses. This distance is larger, because these
+/// are contacts of round parts, which roll. The scalar product of both normals must also be at least
+/// kSameNormals.
 inline constexpr double kSamePredictedPoint = 0.5, kSameNormals = 0.7;
-/// A motion that is predicted or repeated has at most this share of the length in which a resting contact
-/// sinks by ContactFinder::max_resolved_depth.
+/// The length of a motion that is predicted or repeated is at most this share of the length in which a
+/// resting contact sinks by ContactFinder::max_resolved_depth.
 inline constexpr double kRepeatShare = 0.95;
 
 }  // namespace resting_contacts
@@ -188,7 +189,7 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMot
   };
   std::vector<Contact> found = finder_.find(state, motion.end(), max_gap);
   add_followed(resting, max_gap, found);
-  // The time of the force is positive. Contacts that have not rested get the time zero.
+  // force_time() is positive. Contacts that have not rested get the time zero.
   for (Contact& contact : found) contact.since = rested(contact) ? motion.force_time() : 0;
   found.erase(
       std::remove_if(found.begin(), found.end(), [](const Contact& c) { return c.since == 0 && c.gap > 0; }),

@@ -22,12 +22,13 @@ class RestingContacts {
   /// Returns gap(contact) without the extra gap, m.
   double tight_gap(const Contact& contact) const;
   /// Returns the contacts with a gap of at most gap() at a time t (s). If t and the sleeping parts are those
-  /// of the last call and at most 70 % of the parts have moved since, it searches again only near these
-  /// parts.
+  /// of the last call and at most 70 % of the parts have moved since, only contacts of the moved parts are
+  /// searched again. The reference is valid until the next call.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Returns the resting contacts among near(): those that overlap by more than gap(contact), and those with
-  /// a gap of at most gap(contact) and a normal speed of at most motion.max_resting_speed or, for smooth
-  /// contacts (ContactFinder::is_smooth) without restitution, motion.max_inelastic_speed.
+  /// Returns the resting contacts among near(). A contact rests if it overlaps by more than gap(contact). It
+  /// also rests if its gap is at most gap(contact) and its normal speed is at most motion.max_resting_speed.
+  /// For smooth contacts (ContactFinder::is_smooth) without restitution, the largest speed is
+  /// motion.max_inelastic_speed.
   std::vector<Contact> at_rest(const State& state, double t, const FreeMotion& motion);
   /// Returns the longest motion (s), at most motion.h, in which contacts that rest at the start sink by at
   /// most ContactFinder::max_resolved_depth, if no impulse acts. state: the end of the motion.
@@ -35,10 +36,10 @@ class RestingContacts {
   /// Predicts the length of this longest motion (s) at the start of the motion, with gravity (m/s^2) as the
   /// only force.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// Adds contacts that rested before, at their places in the state of the last call of
-  /// ContactFinder::find(), if they are not in its result `found` and their gap is at most max_gap (m). A
-  /// part that has turned touches with one end of a nearly flat region only, but the other end rested, too.
-  /// Keeps the order of found.
+  /// Adds contacts of `resting` to `found`, the result of the last call of ContactFinder::find(), at their
+  /// places in the state of that call (ContactFinder::follow()). A contact is added if it is not in found and
+  /// its gap is at most max_gap (m). This is needed if a part has turned: it then touches with one end of a
+  /// nearly flat region only, although the other end rested, too. Keeps the order of found.
   void add_followed(const std::vector<Contact>& resting, double max_gap, std::vector<Contact>& found) const;
   /// Returns the contacts at `state`, the end of a motion: those that overlap, and those that rested at the
   /// start and are still near, because rounding, the motion or predicted impulses may have opened them.

@@ -19,8 +19,8 @@ namespace pliant {
 namespace sleeping {
 
 /// The end of a step and the start of the next may differ by kTimeTolerance of the length plus kTimeUlps
-/// units in the last place of the time. A change of a drive near both times belongs to the second step: a
-/// load that changes after a step has no influence on this step.
+/// units in the last place of the time. A change of a drive (Drive in sleeping.h) near both times belongs to
+/// the second step: a load that changes after the first step has no influence on it.
 inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
 
 /// Returns whether a vector changes within h seconds after t: whether its values at t, t + h / 2 and t + h
@@ -71,7 +71,7 @@ inline bool moves(const Point& point, double t, double h) {
 }
 
 /// Returns whether a spring acts in the middle of the h seconds after t and an end with prescribed motion
-/// moves. No time at the ends of the step is compared, because another motion may begin there.
+/// moves. Times at the ends of the step are not compared, because another motion may begin there.
 inline bool pulls(const Spring& spring, const Point& end, double t, double h) {
   return spring.acts_at(t + 0.5 * h) && moves(end, t + 0.25 * h, 0.5 * h);
 }
@@ -81,7 +81,7 @@ inline bool pulls(const Spring& spring, const Point& end, double t, double h) {
 inline bool is_prescribed(const Torque& torque) {
   return !torque.torque.is_constant() || (torque.frame == Frame::body && torque.part->motion() != nullptr);
 }
-/// Returns whether such a torque changes within h seconds after t.
+/// Returns whether a torque that is_prescribed() changes within h seconds after t.
 inline bool changes(const Torque& torque, double t, double h) {
   return differs(torque.torque, t, h) || (torque.frame == Frame::body && moves(*torque.part, t, h));
 }
@@ -270,7 +270,7 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
 }
 
 /// Returns an estimate of the largest speed of a material point of a part, m/s. The angular velocity
-/// and the rates of parameters that are no lengths are multiplied by the size of the part. The largest rate
+/// and the rates of parameters that are not lengths are multiplied by the size of the part. The largest rate
 /// of a local displacement is added.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
@@ -282,8 +282,8 @@ PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   return speed;
 }
 
-/// Adds h seconds to the time at rest of each part that is at rest, up to Sleep::after, and sets that of
-/// moving parts to zero. Sleeping parts do not change. Returns whether a part has been at rest for long
+/// Adds h seconds to the time at rest of each part that is at rest, up to Sleep::after. Sets the time at rest
+/// of moving parts to zero. Sleeping parts do not change. Returns whether a part has been at rest for long
 /// enough to sleep.
 PLIANT_INLINE bool Sleeping::update_rest_times(double h, State& state) const {
   bool any = false;

@@ -1,6 +1,6 @@
-// Steps of implicit methods in which parts that deform locally may touch something: the step is repeated as
-// two halves, and both results are extrapolated where that is possible. Function bodies of
-// contact_stepping.h.
+// Function bodies of contact_stepping.h: steps of implicit methods in which parts that deform locally may
+// touch something. Such a step is repeated as two halves, and both results are extrapolated where that is
+// possible.
 #pragma once
 
 #include <pliant/contact/contact_stepping.h>
@@ -18,16 +18,18 @@ namespace soft_contact {
 
 /// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation.
 inline constexpr double kMaxOverlap = 400;
-/// A step that begins with a contact at nodes deeper than this, in the same unit, separates bodies, and is
-/// not repeated. It is more than ContactResolution leaves (contact_separation::kMeshOverlap).
+/// If a contact at nodes is deeper than this multiple of RestingContacts::tight_gap at the start of a step,
+/// the step separates bodies, and is not repeated. The multiple is larger than that which a separation leaves
+/// (contact_separation::kMeshOverlap).
 inline constexpr double kMaxOverlapAtStart = 1000;
-/// Largest number of rounds that look for nodes that keep the positions of the halves.
+/// Largest number of rounds of the search for nodes that keep the positions of the halves.
 inline constexpr int kMaxRounds = 3;
 
-/// Returns the share of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of the
-/// step with the share s is b(s) = halves + s (halves - whole) + s (1 + s) / 2 excess, if energies are
-/// quadratic. halves, whole: balances of both results, J, negative if they lose energy. extrapolated: b(1),
-/// J, which determines excess.
+/// Returns the share s of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of a
+/// result is its change of energy minus its works. If energies are quadratic, the balance with the share s is
+///   b(s) = halves + s (halves - whole) + s (1 + s) / 2 excess.
+/// halves, whole: balances of both results, J; negative if they lose energy. extrapolated: b(1), J; it
+/// determines the constant `excess`.
 inline double share_without_gain(double halves, double whole, double extrapolated) {
   if (!(extrapolated > 0)) return 1;
   if (!(halves < 0)) return extrapolated <= halves ? 1 : 0;
@@ -70,12 +72,12 @@ inline void copy_nodes(const Model& model, const ContactSide& side, const State&
 
 }  // namespace soft_contact
 
-/// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). Such
-/// a step of linearly_implicit is one of linearly implicit Euler, which damps an oscillation with the
+/// Repeats a step with parts that deform locally as two halves, and extrapolates from both (Richardson). With
+/// linearly_implicit, such a step is one of linearly implicit Euler, which damps an oscillation with the
 /// frequency omega by a rate of omega^2 h / 2. The extrapolation has second order, and damps by a rate of
-/// order h^3. Nodes that it would move into a body keep the positions of the halves. If rigid contacts,
-/// sleeping parts, or modes of limits or joints differ, the result is that of the halves; if the halves fail,
-/// it is that of the whole step.
+/// order h^3. Nodes that the extrapolation would move into a body keep the positions of the halves. If rigid
+/// contacts, sleeping parts, or modes of limits or joints differ, the result of the halves is used. If the
+/// halves fail, the result of the whole step is used.
 PLIANT_INLINE void ContactStepping::extrapolate_soft_step(Integrator& method, StepContext& step,
                                                           const Before& before, double length,
                                                           double tolerance) {
@@ -130,8 +132,8 @@ PLIANT_INLINE bool ContactStepping::has_deep_nodes(const State& state) {
   });
 }
 
-/// Looks for nodes that are deeper in a body than soft_contact::kMaxOverlap at the state `full` and the time
-/// t (s), and copies their positions from `halves` to `coarse`. Returns whether there are any.
+/// Finds the nodes that are deeper in a body than soft_contact::kMaxOverlap at the state `full` and the time
+/// t (s), and copies their positions from `halves` to `coarse`. Returns whether there are such nodes.
 PLIANT_INLINE bool ContactStepping::copy_deep_nodes(double t, const State& full, const State& halves,
                                                     State& coarse) {
   std::vector<Contact> found;
@@ -147,9 +149,9 @@ PLIANT_INLINE bool ContactStepping::copy_deep_nodes(double t, const State& full,
 }
 
 /// Chooses the coarse state and the share of the extrapolation of a soft contact step. A node that
-/// extrapolation would move into a body keeps the position of the halves: it met the body in one of both
-/// results only. The share is below 1 where extrapolation would add energy. start, halves, whole: states at
-/// the start of the step, and at its end after the two halves and after the whole step.
+/// extrapolation would move into a body keeps the position of the halves, because it met the body in only one
+/// of both results. The share is below 1 where extrapolation would add energy. start, halves, whole: states
+/// at the start of the step, and at its end after the two halves and after the whole step.
 PLIANT_INLINE ContactStepping::Coarse ContactStepping::soft_extrapolation(double t, const State& start,
                                                                           const State& halves,
                                                                           const State& whole,

@@ -1,6 +1,6 @@
-// Step doubling: a step with resting or unlocated contacts is repeated as two half steps, and with a small
-// tolerance as three thirds, too. The difference of the results gives the error. If they agree, Richardson
-// extrapolation combines them. Function bodies of contact_stepping.h.
+// Function bodies of contact_stepping.h: step doubling. A step with resting contacts, or with contacts whose
+// time was not located, is repeated as two half steps, and with a small tolerance as three thirds, too. The
+// difference of the results gives the error. If the results agree, Richardson extrapolation combines them.
 #pragma once
 
 #include <pliant/body/speed_scale.h>
@@ -29,18 +29,20 @@ namespace step_doubling {
 /// the step is zero. Bodies with prescribed motion (has_prescribed_motion()) are an exception.
 inline constexpr double kAtRestTolerance = 1e-2;
 
-/// The whole step and its halves resolve an impact, or a change of contact points, at different times. If one
-/// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
-/// A difference is a jump if the results do not agree (agree()) and it exceeds this multiple of the speed
-/// that gravity gives a body in the step. Then the error is measured by the displacement that the jump causes
-/// in the step, if the step, times slow_rate(), is at most longest_contact_step() with the default settings.
+/// The whole step and its halves resolve an impact, or a change of contact points, at different times. If
+/// only one of both results includes the impact, the velocities differ by a jump, however short the step is.
+/// A difference is a jump if the results do not agree (agree()) and the difference exceeds this multiple of
+/// the speed that gravity gives a body in the step. Then the error is measured by the displacement that the
+/// jump causes in the step, if slow_rate() times the length of the step is at most longest_contact_step()
+/// with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
-/// A gap above this multiple of the largest gap of a resting contact is not left by a step: the contact has
+/// A gap above this multiple of the largest gap of a resting contact is no error of a step: the contact has
 /// opened.
 inline constexpr double kMaxLeftGap = 1000;
-/// Steps to a tolerance below this are repeated in thirds, too.
+/// With a tolerance below this, steps are repeated in thirds, too.
 inline constexpr double kThirdsTolerance = 1e-4;
-/// In steps up to this length, times slow_rate(), the error is always measured by the displacement.
+/// If slow_rate() times the length of a step is at most this, the error is always measured by the
+/// displacement.
 inline constexpr double kBriefStep = 2e-5;
 
 /// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more
@@ -104,12 +106,13 @@ PLIANT_INLINE bool ContactStepping::may_double() const {
                                    [&](const Contact& c) { return finder_.finds(c); });
 }
 
-/// Repeats a step in thirds. Returns the error of the extrapolation, O(h^3), in tolerances. If it is at most
-/// 1, extrapolates from the results T_1, T_2, T_3 of the whole step, of its halves and of its thirds to
+/// Repeats a step in thirds. Returns an error estimate of the extrapolation, O(h^3), in tolerances. If this
+/// error is at most 1, extrapolates from the results T_1, T_2, T_3 of the whole step, its halves and its
+/// thirds to
 ///   T = T_3 + 4 (T_3 - T_2) - (T_3 - T_1) / 2
-/// (Hairer, Norsett and Wanner 1993, section II.9). The error is T - (2 T_2 - T_1). If the thirds differ from
-/// the whole step in their events or contacts, nothing is extrapolated, and the error is at least that of the
-/// halves, error_of_halves. before: the counters before the step.
+/// (Hairer, Norsett and Wanner 1993, section II.9). The error is estimated as T - (2 T_2 - T_1). If the
+/// thirds differ from the whole step in their events or contacts, nothing is extrapolated, and the error is
+/// at least error_of_halves. before: the counters before the step.
 PLIANT_INLINE StepError ContactStepping::step_by_thirds(Integrator& method, StepContext& step,
                                                         const ErrorScale& scale, const Whole& whole,
                                                         const State& initial, const StepCounters& before,
@@ -137,7 +140,7 @@ PLIANT_INLINE StepError ContactStepping::step_by_thirds(Integrator& method, Step
   return {error, 2, whole.length};
 }
 
-/// Returns to the start of a step that is repeated.
+/// Restores the record and the state at the start of a step that is to be repeated. initial: this state.
 PLIANT_INLINE void ContactStepping::restart_step(StepContext& step, const State& initial,
                                                  const StepCounters& before) {
   step.counters.impacts = before.impacts;
@@ -264,8 +267,8 @@ PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Fract
 }
 
 /// Returns the size of a difference of two results, in tolerances, or the error by contacts that the first
-/// part of a repetition has lost, whichever is larger. length: of the step, s. jumped: whether the velocities
-/// differ by a jump.
+/// part of a repetition has lost, whichever is larger. length: length of the step, s. jumped: whether the
+/// velocities differ by a jump.
 PLIANT_INLINE double ContactStepping::measure(const Difference& difference, double length,
                                               const Fractions& fractions, bool jumped,
                                               const ErrorScale& scale, const State& state) const {
@@ -287,10 +290,10 @@ PLIANT_INLINE double ContactStepping::measure(const Difference& difference, doub
   return std::max(end_error, loss_error);
 }
 
-/// Includes in the residual of the state the gaps and the normal speeds of the contacts that have pushed,
-/// from number `first` in the record on. Gaps are not linear in the coordinates, so that the displacement by
-/// the impulses, and extrapolation, leave small gaps. Without them in the residual, the next step would take
-/// these contacts for impacts. t: time of the state, s; h: length of the step, s.
+/// Increases State::contact_residual to at least gap / h and the normal speed of each contact with a normal
+/// impulse, from number `first` in the record on. Gaps are not linear in the coordinates, so that the
+/// displacement by the impulses, and extrapolation, leave small gaps. Without this increase the next step
+/// would treat these contacts as impacts. t: time of the state, s; h: length of the step, s.
 PLIANT_INLINE void ContactStepping::include_openings(std::size_t first, double t, double h,
                                                      State& state) const {
   PairKey last{};
@@ -345,7 +348,7 @@ PLIANT_INLINE void ContactStepping::keep_momenta(double t, const std::vector<Vec
   }
 }
 
-/// Extrapolates the state of some parts, at the end of the finest steps, by Richardson extrapolation. last:
+/// Replaces the state of some parts at the end of the finest steps by its Richardson extrapolation. last:
 /// number of the first contact of the last of these steps in the record. Works are extrapolated, too.
 /// Energies are not linear in the coordinates and velocities, so that the energy changes by more than the
 /// works.

@@ -20,12 +20,12 @@ bool has_prescribed_motion(const Model& model, const std::vector<Contact>& conta
 /// nodes but is touched as a whole, its matrix A = M^-1 (LocalDeformation::compliance) is computed too.
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work);
-/// Sets the velocities after the impulses of a problem without nodes in a state, and no displacements. work:
-/// as evaluate_touched() left it.
+/// Sets the velocities of a state to those after the impulses, without displacements. problem: has no nodes
+/// as movers. work: the evaluation by evaluate_touched().
 void apply_velocities(const ContactProblem& problem, const Model& model, const Workspace<double>& work,
                       State& state);
 /// Applies a solution to a state: sets the velocities after the impulses, and adds the displacements. work:
-/// as evaluate_touched() left it.
+/// the evaluation by evaluate_touched().
 void apply_solution(const ContactProblem& problem, const Model& model, const Workspace<double>& work,
                     State& state);
 

@@ -48,7 +48,8 @@ class AnyLinkOf final : public AnyLink {
   }
 };
 
-/// A chain of links of any type. Its functions have the arguments and results of those of Chain (chain.h).
+/// A chain of links of any type. Its functions have the same arguments and results as the functions of Chain
+/// (chain.h).
 class AnyChain {
  public:
   AnyChain() = default;

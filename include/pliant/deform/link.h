@@ -38,10 +38,9 @@ bool link_acts(const LinkParameters<P>& parameters) {
   return !is_identity<Deform>(parameters.b);
 }
 
-/// Applies a link to a batch of jets if parameter k of the link is dynamic and all its other parameters are
-/// frozen. The shape and all earlier links must be frozen, so that the incoming positions are constant. At
-/// Level::rates, one Taylor2 number in parameter k gives s, J, s1 and s2. At Level::jacobian, one dual number
-/// gives s and J.
+/// Applies a link whose only dynamic parameter is parameter k to a batch of jets. The shape and all earlier
+/// links must be frozen, so that the incoming positions are constant. At Level::rates, one Taylor2 number in
+/// parameter k gives s, J, s1 and s2. At Level::jacobian, one dual number gives s and J.
 template <class Deform, class P, class S>
 void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                       JetBatch<S>& batch) {
@@ -97,7 +96,7 @@ void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
   }
 }
 
-/// The formulas of apply_link() for a link that acts.
+/// Implements apply_link() for a link that acts.
 template <class Deform, class P, class S>
 void transform_jets(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
   constexpr int K = deform_size<Deform>;
@@ -131,7 +130,8 @@ void transform_jets(const HalfHeight<P>& half, const LinkParameters<P>& paramete
   }
   const DeformBy<Deform, T> deform_t(h_t, b_t);
   const DeformBy<Deform, D> deform_d(h_d, b_d);
-  // One loop computes time and partial derivatives, so that the compiler shares their common terms.
+  // One loop computes the time derivatives and the partial derivatives, so that the compiler shares their
+  // common terms.
   auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];

@@ -27,8 +27,8 @@ struct Taper {
 
  private:
   /// Returns width, or 1e-10 if |width| <= 1e-10. width: factor of the section relative to the middle
-  /// section. It is zero at the tip of a full taper (|tx| or |ty| = 1); with the bound, the inverse maps the
-  /// tip to the axis.
+  /// section. The width is zero at the tip of a full taper (|tx| or |ty| = 1); with the bound, the inverse
+  /// maps the tip to the axis.
   template <class T>
   static T bounded_width(const T& width) {
     const T min_width(1e-10);

@@ -1,5 +1,5 @@
 // CRC-32 checksums of recorded tables. A table of checksums has one row per recorded state. For each checked
-// table the row has the CRC-32 of all numbers of this table from the first one to the last one of the state.
+// table the row has the CRC-32 of all numbers of this table, from its first number to the last of this state.
 // The first CRC-32 that does not match therefore belongs to the first damaged state. The last number of a row
 // is the CRC-32 of the other numbers of the row, so that damage in the checksums is not mistaken for damage
 // in a table.
@@ -34,7 +34,7 @@ struct CheckedTable {
 
 /// The result of a comparison of tables with their checksums.
 struct Inspection {
-  std::int64_t undamaged = 0;       ///< number of first states whose rows are all as they were written
+  std::int64_t undamaged = 0;       ///< number of states before the first damaged or missing row
   std::vector<std::string> damage;  ///< one text per damaged file, with its first damaged row or rows
 };
 
@@ -44,15 +44,16 @@ std::vector<Column> checksum_columns(const std::vector<CheckedTable>& tables);
 /// Writes a table of checksums. Members throw std::system_error if the file cannot be written.
 class ChecksumWriter {
  public:
-  /// Creates a new table. Throws std::system_error if it exists.
+  /// Creates a new table. Throws std::system_error if the file exists.
   static ChecksumWriter create(const std::filesystem::path& path, std::vector<CheckedTable> tables);
   /// Opens a table, and removes all rows after the first `states` rows.
   static ChecksumWriter resume(const std::filesystem::path& path, std::vector<CheckedTable> tables,
                                std::int64_t states);
 
-  /// Adds rows of a table to its checksum. table: its index. count: number of all numbers in the rows.
+  /// Adds rows of a table to its checksum. table: index of the table. count: number of all numbers in the
+  /// rows.
   void add(std::size_t table, const double* numbers, std::size_t count, std::int64_t rows = 1);
-  /// Appends the row of a state, to which the rows since the last call belong.
+  /// Appends the row of a state. All rows that were added since the last call belong to this state.
   void end_state();
   void flush() { writer_.flush(); }
   void flush_to_disk() { writer_.flush_to_disk(); }
@@ -82,7 +83,7 @@ class ChecksumReader {
 
   /// Returns the number of states with checksums.
   std::int64_t states() const { return reader_.rows(); }
-  /// Returns the number of states, at most states(), whose rows all tables contain.
+  /// Returns the number of states, from the first on, whose rows are complete in all tables.
   std::int64_t whole_states() const;
   /// Returns the number of rows that the first `states` states have in a table, given by its index. Throws
   /// RecordingMismatch if the checksums are damaged there.

@@ -18,22 +18,22 @@
 
 namespace pliant {
 
-/// These functions return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables
-/// have these columns, with indices in place of names.
+/// Return the columns of contacts.csv and of joint_impulses.csv, in order. The .npy tables have the same
+/// columns, with indices in place of names.
 std::vector<Column> contact_columns();
 std::vector<Column> joint_impulse_columns();
 
 class ContactRecordingWriter {
  public:
-  /// Creates new tables. Throws std::system_error if a table exists. All members throw it if a table cannot
-  /// be written.
+  /// Creates new tables. Throws std::system_error if a table exists. All members throw std::system_error if a
+  /// table cannot be written.
   static ContactRecordingWriter create(const std::filesystem::path& folder);
   /// Opens existing tables and removes their rows after the first `states` recorded states. Throws
   /// RecordingMismatch if a table is damaged.
   static ContactRecordingWriter resume(const std::filesystem::path& folder, std::int64_t states);
 
-  /// Appends the contacts and the joint impulses of the last step of the simulation, which belong to a
-  /// recorded state. The rows stay in memory until flush().
+  /// Appends the contacts and the joint impulses of the last step of the simulation. The state at the end of
+  /// this step is a recorded state. The rows stay in memory until flush().
   void append(const Simulation& simulation);
   /// Writes the rows in memory to the files. With to_disk, they survive a power cut too.
   void flush(bool to_disk = false);

@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// The frames first, first + stride, ... below `end`. Shard i of n contains every n-th of these frames,
-/// beginning with the i-th one, so that n processes can share the work.
+/// beginning with the i-th frame, so that n processes can share the work.
 struct FrameRange {
   /// Largest number of frames in a selection: the number of frames whose file names have six digits.
   static constexpr std::int64_t kMaxFrames = 1000000;

@@ -16,8 +16,8 @@ namespace pliant {
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
                   const TableColumns& trajectory, bool contacts = false);
 
-/// Throws RecordingMismatch if layout.json is missing or damaged, has another version, or if the columns of
-/// q.npy and v.npy in it are not those of the model.
+/// Throws RecordingMismatch if layout.json is missing or damaged, has another version, or lists columns of
+/// q.npy and v.npy that differ from the columns of the model.
 void compare_layout(const std::filesystem::path& folder, const Model& model);
 
 }  // namespace pliant

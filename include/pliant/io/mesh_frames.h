@@ -14,10 +14,10 @@ namespace pliant {
 enum class MeshFormat { obj, ply };
 
 /// Writes frame_000000.obj (and parts.mtl) or frame_000000.ply for each frame into an existing folder. Frame
-/// k is at time k / frame_rate. If the scene has a coloring, PLY vertices have its values as "strain" or
-/// "displacement"; OBJ cannot store them. Throws std::system_error, RecordingMismatch. frames: numbers of the
-/// frames. The parameters are separate objects, because both `pliant run` (while the run is open) and `pliant
-/// export` (for a finished run) call this function.
+/// k is at time k / frame_rate. If the scene has a coloring, PLY vertices have the values of the coloring as
+/// the property "strain" or "displacement"; OBJ files cannot store values. Throws std::system_error,
+/// RecordingMismatch. frames: numbers of the frames. The parameters are separate objects, because `pliant
+/// run` (while the run is open) and `pliant export` (for a finished run) call this function.
 void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene,
                        const Model& model, const Recording& recording, double frame_rate,
                        const std::vector<std::int64_t>& frames, Progress& progress);

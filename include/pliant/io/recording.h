@@ -2,8 +2,8 @@
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
 // joints) and a check number, work.npy the work up to each state. supports.npy contains the contact cache of
 // scenes with contact, and checksums.npy the checksums of these tables. A recorded state is the initial state
-// or a state after a step, never an interpolated one. A run resumed from it reproduces all later states bit
-// by bit. layout.json (layout.h) names every column.
+// or a state after a step, never an interpolated state. A run resumed from a recorded state reproduces all
+// later states bit by bit. layout.json (layout.h) names every column.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class RecordingMismatch : public std::runtime_error {
 
 /// Returns the tables of states that checksums.npy checks.
 std::vector<CheckedTable> checked_tables(const Model& model);
-/// Opens the checksums of these tables, checksums.npy. Throws std::system_error, RecordingMismatch.
+/// Opens checksums.npy, the checksums of the tables of states. Throws std::system_error, RecordingMismatch.
 ChecksumReader state_checksums(const std::filesystem::path& folder, const Model& model);
 
 /// Appends states. Members throw std::system_error when a file cannot be written.
@@ -83,13 +83,13 @@ class Recording {
   State state(std::int64_t row) const;
   /// Returns the work up to a recorded state.
   RunWork work(std::int64_t row) const;
-  /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
+  /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time, returns
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
   /// With error control, the state between two recorded states is the result of a shorter step of dop853
-  /// (order 8) from the first of them, if no part deforms locally and a full step of dop853 leads to the
-  /// second one. Otherwise q is the quintic interpolant of q, v and the accelerations, and v is linear;
-  /// README.md of this folder describes the exceptions for impacts and contact. Times outside the recording
-  /// give its first or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
+  /// (order 8) from the first state, if no part deforms locally and a full step of dop853 leads to the second
+  /// state. Otherwise q is the quintic interpolant of q, v and the accelerations, and v is linear; README.md
+  /// of this folder describes the exceptions for impacts and contact. Times outside the recording give its
+  /// first or last state. Throws RecordingMismatch; std::out_of_range if the recording is empty.
   State at(double time) const;
 
  private:

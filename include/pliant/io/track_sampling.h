@@ -1,4 +1,4 @@
-// The states of a run that its tracks need in addition to those of its frames.
+// The states that a run records for its tracks, in addition to the states that it records for frames.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,24 @@
 namespace pliant {
 
 /// Selects the steps after which a state is recorded for the tracks of a scene: a tracked point has then
-/// moved by more than 2 % of the size of its part since the last recorded state. Therefore tracks are curves
-/// at any frame rate, and points at rest need no memory.
+/// moved by more than 2 % of the size of its part since the last recorded state. Therefore tracks are smooth
+/// at any frame rate, and no states are recorded for points at rest.
 class TrackSampling {
  public:
   /// The model must outlive the object. Points of the tracks must be on parts of the model.
   TrackSampling(const Model& model, const std::vector<Track>& tracks);
 
-  /// Notes a recorded state.
+  /// Stores the positions of the points at a recorded state.
   void note(const State& state);
-  /// Returns whether a state is to be recorded, because a point has moved since the last noted state. At
-  /// least one state must have been noted.
+  /// Returns whether a state is to be recorded, because a point has moved since the last call of note().
+  /// note() must have been called before.
   bool has_moved(const State& state) const;
 
  private:
   struct Sampled {
     PlacedPoint point;
     double longest;     // distance between two recorded states, m
-    Vec3<double> last;  // position at the last noted state, m
+    Vec3<double> last;  // position at the last call of note(), m
   };
   std::vector<Sampled> points_;
 };

@@ -13,7 +13,8 @@
 //   sensor.NAME                              value of a sensor
 //   if the parts have columns, for every joint NAME:
 //     joint.NAME.force.x y z                 force on the first side of the joint, N, world
-//     joint.NAME.torque.x y z                torque on this side about the joint, N m, if it has one
+//     joint.NAME.torque.x y z                torque on this side about the joint, N m, if the joint has a
+//                                            torque
 //     joint.NAME.gap                         gap, m
 //   energy.kinetic gravity elastic springs total, work.KIND   J; energy.local with local deformation
 //   balance                                  J: energy.total - its value at time 0 - all works
@@ -38,7 +39,7 @@ class TrajectoryTable {
   static constexpr std::size_t kMaxParts = 100;
 
   /// scene: provides the tracks. simulation: provides the model, its dynamics, the workspace of its ledger,
-  /// and the initial energy for the energy balance. Both must outlive the table.
+  /// and the initial energy for the energy balance. Scene and simulation must outlive the table.
   TrajectoryTable(const Scene& scene, Simulation& simulation);
 
   /// Returns the columns of the table. The table must outlive the columns.

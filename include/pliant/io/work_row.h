@@ -1,5 +1,5 @@
 // The work of a run up to a state: a row of work.npy, and the counters in run.json. A resumed run continues
-// these counters from the state at which it continues.
+// these counters from the state from which the run continues.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +19,20 @@ struct RunWork {
   Counters parts;
 };
 
-/// Returns the columns of work.npy, in order: all but the count of factorisations, because a resumed run
-/// repeats some of them.
+/// Returns the columns of work.npy, in order. The count of factorisations has no column, because a resumed
+/// run repeats some factorisations.
 std::vector<Column> work_columns();
 /// Returns the row of work.npy for the work up to a state.
 std::vector<double> work_row(const RunWork& work);
-/// Returns the work of a row of work.npy, which has one number per column; without factorisations.
+/// Returns the work of a row of work.npy, which has one number per column. The count of factorisations is 0.
 RunWork read_work_row(const double* row);
 
 /// Returns the names and values of all counts, without the errors of contact.
 std::vector<std::pair<std::string, long>> counts_of(const RunWork& work);
 /// Sets the count with a name; a name that is unknown is ignored.
 void set_count(RunWork& work, const std::string& name, long value);
-/// Returns the work of a resumed run: that before the session, plus the work of the session since the counts
-/// `at_start`. The larger errors of contact are kept.
+/// Returns the work of a resumed run: the work before the session, plus the work of the session since the
+/// counts `at_start`. The larger errors of contact are kept.
 RunWork continued(const RunWork& before, const RunWork& session, const RunWork& at_start);
 
 }  // namespace pliant

@@ -9,10 +9,10 @@
 
 namespace pliant {
 
-/// Every material law, here and in local/solid, has these members. `of`: argument of the energy. `constant`:
-/// whether the derivative of P is constant. lambda, mu: Lame's constants (Pa), which viscous damping uses.
-/// density() returns W. stress() returns P = dW/dH, or dW/dF for large deformation. stress_along() returns
-/// the derivative of P along dH or dF. T: double, Pack or a dual number.
+/// Every material law of this folder and of local/solid has these members. `of`: argument of the energy.
+/// `constant`: whether the derivative of P is constant. lambda, mu: Lame's constants (Pa), which viscous
+/// damping uses. density() returns W. stress() returns P = dW/dH, or dW/dF for large deformation.
+/// stress_along() returns the derivative of P along dH or dF. T: double, Pack or a dual number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
   static constexpr bool constant = true;

@@ -23,7 +23,7 @@ class NodalEnergy {
   ///                  on global parameters
   enum class Of { displacement, position };
 
-  /// Scratch storage of an evaluation; its contents are ignored. Keep it between calls to avoid heap
+  /// Scratch storage of an evaluation; its contents are ignored. Keep the buffer between calls to avoid heap
   /// allocation in a step.
   struct Buffer {
     std::vector<double> numbers;
@@ -31,11 +31,12 @@ class NodalEnergy {
 
   virtual ~NodalEnergy() = default;
   virtual Of of() const = 0;
-  /// Returns whether E(Q d) = E(d) for every rotation Q of all displacements. If so, E is also valid where a
+  /// Returns whether E(Q d) = E(d) for every rotation Q of all displacements. E is then also valid where a
   /// global deformation has rotated the material.
   virtual bool isotropic() const { return false; }
-  /// Returns the inertia of the energy's own coordinates, kg m^2 for angles. In x, own coordinates follow the
-  /// coordinates of the nodes. The result is empty if the energy has no own coordinates.
+  /// Returns the inertia of the energy's own coordinates, kg m^2 for angles. Own coordinates are coordinates
+  /// in addition to the displacements of nodes, for example edge rotations; in x they follow the coordinates
+  /// of the nodes. The result is empty if the energy has no own coordinates.
   virtual VecX<double> own_inertia() const { return {}; }
 
   /// Returns E, J.

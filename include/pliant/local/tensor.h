@@ -54,8 +54,8 @@ Mat3<T> scaled(const T& a, const Mat3<T>& A) {
     for (int j = 0; j < 3; ++j) B(i, j) = a * A(i, j);
   return B;
 }
-/// Returns the derivative of cofactors(A) along B. It is bilinear and symmetric in A and B, and equals twice
-/// cofactors(A) for B = A.
+/// Returns the derivative of cofactors(A) along B. The result is bilinear and symmetric in A and B, and
+/// equals twice cofactors(A) for B = A.
 template <class T>
 Mat3<T> mixed_cofactors(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;

@@ -20,7 +20,7 @@ MatX<double> complement_basis(const MatX<double>& A);
 /// the rank that column_basis(A, dependent) finds.
 MatX<double> complement_basis(const MatX<double>& A, double dependent);
 
-/// Returns an x that minimises |A x - b|. Only one x does so if the columns of A are independent.
+/// Returns an x that minimises |A x - b|. x is unique if the columns of A are independent.
 VecX<double> least_squares(const MatX<double>& A, const VecX<double>& b);
 
 /// Returns the x of least norm among those that minimise |A x - b|, for A of any rank.

@@ -1,5 +1,5 @@
-// Disjoint sets of the integers 0 ... n - 1: groups of elements that are connected directly or through
-// others. Searches shorten their paths by path halving (Tarjan and van Leeuwen 1984).
+// Disjoint sets of the integers 0 ... n - 1. Two integers are in one set if a chain of calls of unite()
+// connects them. Searches shorten their paths by path halving (Tarjan and van Leeuwen 1984).
 #pragma once
 
 #include <cstddef>

@@ -29,6 +29,7 @@ struct ComplexEigenpairs {
   VecX<std::complex<double>> values;
   MatX<std::complex<double>> vectors;  ///< one eigenvector per column
 };
+/// Returns the eigenvalues and eigenvectors of A, n x n.
 ComplexEigenpairs eigenpairs(const Eigen::Ref<const MatX<double>>& A);
 /// Returns the eigenvalues of any square matrix, in no particular order.
 VecX<std::complex<double>> eigenvalues(const Eigen::Ref<const MatX<double>>& A);

@@ -1,4 +1,4 @@
-// A test for finite numbers: one sum, which compilers map to vector units.
+// A test for finite numbers. The test computes one sum, which compilers vectorise.
 #pragma once
 
 #include <pliant/math/types.h>

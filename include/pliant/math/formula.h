@@ -1,7 +1,7 @@
 // Formulas in scenes, of time ("0.2*sin(2*pi*t)") and of named quantities ("-20*ball.z"). The parser turns
-// the text into a flat program in postfix order. A formula of time runs on second-order Taylor numbers, so
-// value, rate and second derivative are exact. A formula of named quantities runs on double, Dual<1> or
-// Taylor2<double>.
+// the text into a flat program in postfix order. A formula of time is evaluated with second-order Taylor
+// numbers, so value, rate and second derivative are exact. A formula of named quantities is evaluated with
+// double, Dual<1> or Taylor2<double>.
 //
 //   sum     = product { ("+" | "-") product }          numbers  1  .5  2.5e-3
 //   product = unary { ("*" | "/") unary }              names    t  pi
@@ -25,12 +25,12 @@ namespace pliant {
 /// An error in the text of a formula: its place and its reason.
 class FormulaError : public std::runtime_error {
  public:
-  /// offset: byte of the text, from 0. reason: a complete message (the error, the expectation, the nearest
-  /// name).
+  /// offset: byte of the text, from 0. reason: the error as a complete message. For an unknown name the
+  /// message also contains the nearest known name.
   FormulaError(std::size_t offset, const std::string& reason);
 
-  /// Returns the byte of the text at which the error was found, from 0; the length of the text if it ends too
-  /// early.
+  /// Returns the byte of the text at which the error was found, from 0. If the text ends too early, this is
+  /// the length of the text.
   std::size_t offset() const { return offset_; }
   /// Returns the error without its place; what() returns "at character N: reason", N = offset() + 1.
   const std::string& reason() const { return reason_; }
@@ -43,9 +43,9 @@ class FormulaError : public std::runtime_error {
 /// A formula of t and of named quantities. Constant subexpressions are evaluated once, by the constructor.
 class Formula {
  public:
-  /// Returns the number of a named quantity, from 0, or -1 for an unknown name without quantity. owner: for
-  /// example the name of a part. quantity: the text after the first dot; empty if there is none. Throws
-  /// std::invalid_argument, with a complete message, if the owner has no such quantity.
+  /// Returns the number of a named quantity, from 0, or -1 if the name is unknown and `quantity` is empty.
+  /// owner: for example the name of a part. quantity: the text after the first dot; empty if there is no dot.
+  /// Throws std::invalid_argument, with a complete message, if the owner has no such quantity.
   using Names = std::function<int(const std::string& owner, const std::string& quantity)>;
 
   static constexpr std::size_t kMaxLength = 4096;  ///< bytes of text
@@ -65,9 +65,9 @@ class Formula {
   /// finite value (1/0).
   explicit Formula(const std::string& text, const Names& names = {});
 
-  /// Returns the value for values of t (s) and of the named quantities, in the order of their numbers. T is
-  /// double, Dual<1> or Taylor2<double>. At a kink of abs, min, max or step, derivatives are those of one
-  /// branch. Defined in scalar/formula_program.h.
+  /// Returns the value of the formula. time: t, s. variables: the values of the named quantities, in the
+  /// order of their numbers. T is double, Dual<1> or Taylor2<double>. At a kink of abs, min, max or step, the
+  /// derivatives are those of one branch. Defined in scalar/formula_program.h.
   template <class T>
   T value(const T& time, const T* variables) const;
   /// Returns whether the formula contains named quantities.
@@ -77,8 +77,8 @@ class Formula {
 
   /// For a formula without named quantities: returns the value and the first and second derivative with
   /// respect to t. At a kink of abs, min or max the derivatives are one-sided, towards larger t. At a jump of
-  /// step, or of smoothstep(a, a, x), the derivatives are zero. The result is not finite where the formula is
-  /// not (1/t at 0); the caller checks this.
+  /// step, or of smoothstep(a, a, x), the derivatives are zero. The caller checks whether the result is
+  /// finite (1/t at 0 is not).
   Taylor2<double> at(double t) const;
 
   /// Returns whether the formula is one number, without t and without named quantities.

@@ -1,4 +1,4 @@
-// The known name that is nearest to a misspelled one, for messages about unknown keys, functions or shapes.
+// The known name that is nearest to a misspelled name, for messages about unknown keys, functions or shapes.
 #pragma once
 
 #include <string>

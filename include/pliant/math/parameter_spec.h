@@ -11,12 +11,12 @@ struct Range {
   constexpr bool contains(double x) const { return x >= min && x <= max; }
 };
 
-/// How the position of a material point depends on a parameter. This decides which quadrature of the mass is
-/// exact (include/pliant/part/README.md).
+/// How the displacement of a material point, caused by a change of the parameter, depends on the rest
+/// position of the point. The quadrature of the mass is chosen accordingly (include/pliant/part/README.md).
 enum class Follows {
-  affine,   ///< the displacement of the point is affine in its rest position
-  section,  ///< the displacement is affine in (x, y) within each section z = const of the rest shape
-  ring,     ///< the displacement is affine in (x, y) along each material ring (u, w) = const
+  affine,   ///< affine in the rest position (x, y, z)
+  section,  ///< affine in (x, y) within each section z = const of the rest shape
+  ring,     ///< affine in (x, y) along each curve of material points with the same u and w
   free,     ///< none of the above
 };
 
@@ -33,7 +33,7 @@ struct ParameterSpec {
   const char* name;
   double standard;  ///< default value
   Range frozen;     ///< admissible values of a constant parameter
-  Range dynamic;    ///< admissible values of a degree of freedom; its ends are one-sided constraints
+  Range dynamic;    ///< admissible values of a degree of freedom; each end is a one-sided constraint
   bool relative;    ///< whether the dynamic range is in multiples of the rest value
   Quantity quantity;
   const char* meaning;
@@ -47,8 +47,8 @@ struct ParameterSpec {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Returns the description of a positive length (m). As a degree of freedom its range is 1e-3 to 1e3 times
-/// its rest value.
+/// Returns the description of a positive length (m). If the length is a degree of freedom, its range is 1e-3
+/// to 1e3 times the rest value.
 constexpr ParameterSpec length(const char* name, double standard, const char* meaning,
                                Follows follows = Follows::affine) {
   return {name, standard, {1e-12, 1e12}, {1e-3, 1e3}, true, Quantity::length, meaning, follows};
@@ -71,8 +71,8 @@ constexpr ParameterSpec ratio(const char* name, double standard, Range frozen, R
   return {name, standard, frozen, dynamic, false, Quantity::ratio, meaning, follows};
 }
 
-/// Returns the description of a squareness exponent of a superquadric. As a degree of freedom it stays in
-/// [0.1, 1.9], the usual range in superquadric fitting; the surface has cusps above 2.
+/// Returns the description of a squareness exponent of a superquadric. If the exponent is a degree of
+/// freedom, its range is [0.1, 1.9], the usual range in superquadric fitting; the surface has cusps above 2.
 constexpr ParameterSpec exponent(const char* name, const char* meaning, Follows follows) {
   return {name, 1.0, {0.02, 5.0}, {0.1, 1.9}, false, Quantity::exponent, meaning, follows};
 }

@@ -26,9 +26,9 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   return sum;
 }
 
-/// A rotation with cos theta at or below this value is treated as a half turn. The sign of its axis is not
-/// defined, so rotation_vector first rotates Q by kHalfTurnOffset about the coordinate axis that is nearest
-/// to the axis of Q. The result is the rotation vector of this rotated matrix.
+/// A rotation with cos theta at or below this value is treated as a half turn. The sign of the axis of a half
+/// turn is not defined, so rotation_vector first rotates Q by kHalfTurnOffset about the coordinate axis that
+/// is nearest to the axis of Q. The result is the rotation vector of this rotated matrix.
 inline constexpr double kHalfTurnCosine = -1 + 1e-12;
 inline constexpr double kHalfTurnOffset = 1e-5;  // rad
 

@@ -1,9 +1,9 @@
 // An interface for sparse factorisations of symmetric matrices: A = Pᵀ L D Lᵀ P with a fill-reducing ordering
-// P (AMD). A is positive definite, or it is quasi-definite: positive definite in its first rows and negative
-// definite in the others. The matrix of Eq. (14) with a small negative diagonal as its lower block is
-// quasi-definite. D is positive in the first rows and negative in the others. The pattern is analysed once;
-// the values are factored each time they change. The core library contains Eigen's factorisation;
-// pliant::suitesparse adds CHOLMOD's (solve/cholmod_factor.h).
+// P (AMD). A is positive definite, or it is quasi-definite: the block of its first rows is positive definite
+// and the block of the other rows is negative definite. The matrix of Eq. (14) with a small negative diagonal
+// as its lower block is quasi-definite. D is positive in the first rows and negative in the others. The
+// pattern is analysed once; the values are factored each time they change. The core library contains Eigen's
+// factorisation; pliant::suitesparse adds CHOLMOD's (solve/cholmod_factor.h).
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// The pivot at which a factorisation stopped.
 struct BadPivot {
   Eigen::Index row;  ///< the row and column of A, in the order of A
-  double value;      ///< the pivot, D(row); NaN if the method does not report it
+  double value;      ///< the pivot, D(row); NaN if the factorisation does not report it
   double diagonal;   ///< A(row, row), the scale of the pivot
 };
 
@@ -57,21 +57,21 @@ class SparseFactor {
   /// Returns the number of entries of L, including its diagonal. Valid after a factor() that succeeded.
   virtual Eigen::Index nonzeros() const = 0;
 
-  /// A pivot of at most this fraction of its diagonal entry counts as zero. A redundant row has such a pivot:
-  /// exact arithmetic would give zero, but rounding leaves a small number.
+  /// A pivot of at most this fraction of its diagonal entry is treated as zero. The pivot of a redundant row
+  /// is zero in exact arithmetic, but small and nonzero because of rounding.
   static constexpr double kPivotTolerance = 1e-13;
 
  protected:
   SparseFactor() = default;
   /// Stores the pivot of a row of A for pivots(). Returns whether the pivot is finite, has the sign of the
-  /// row and is large enough; otherwise stores it for bad_pivot().
+  /// row and is large enough. A pivot that is not accepted is also stored for bad_pivot().
   bool accept_pivot(Eigen::Index row, double pivot);
   bool quasi_definite() const { return n_positive_ < size(); }
 
  private:
   virtual void do_analyse(const SparseMatrix& A) = 0;
   /// Factors A and calls accept_pivot in the order of elimination. Returns whether all pivots were accepted;
-  /// stops at the first one that was not.
+  /// stops at the first pivot that was not accepted.
   virtual bool do_factor(const SparseMatrix& A) = 0;
   virtual void do_solve(Eigen::Ref<Eigen::MatrixXd> x) = 0;
 

@@ -12,8 +12,8 @@ namespace pliant {
 /// 1. F: one row for each node, one column for each function; F(i, k) is the contribution of node i to the
 /// integral of function k. The result satisfies F^T c = F^T 1. The error of an integral, relative to the sum
 /// of |F(i, k)| over i, is of the order of rounding or of `tolerance`. rank_found (may be null) receives r.
-/// If the columns of F are samples of a space of functions, the rule can be exact for the whole space only if
-/// F has more columns than r; the caller checks this.
+/// The columns of F may be samples from a space of functions. If r equals the number of columns, the samples
+/// may not span the whole space, and the rule may not be exact for this space; the caller checks this case.
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found = nullptr,
                           double tolerance = 1e-15);
 

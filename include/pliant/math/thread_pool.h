@@ -10,12 +10,14 @@ namespace pliant {
 /// A fixed number of threads that run the tasks of one loop at a time.
 class ThreadPool {
  public:
-  /// threads >= 1, including the thread that calls run(). With 1 all tasks run in the calling thread.
+  /// threads: number of threads, at least 1, including the thread that calls run(). With 1 all tasks run in
+  /// the calling thread.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
+  /// Returns the number of threads, including the thread that calls run().
   int threads() const;
   /// Calls task(i) for 0 <= i < n, in any order, and returns when all calls have ended. If tasks throw, run()
   /// rethrows the exception of the task with the lowest i. A call of run() from within a task runs all its

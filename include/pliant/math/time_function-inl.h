@@ -1,8 +1,8 @@
 // Key frames: with h = t_{i+1} - t_i, a = (t_{i+1} - t)/h and b = (t - t_i)/h, the cubic between the keys i
 // and i+1 is
 //   y = a y_i + b y_{i+1} + ((a^3 - a) m_i + (b^3 - b) m_{i+1}) h^2/6,  m the second derivatives at the keys.
-// Equal slopes from both sides of each inner key give a tridiagonal system for m. The two ends are either
-// both natural (m = 0) or both have given rates.
+// The slopes on both sides of each inner key are equal, which gives a tridiagonal system for m. The two ends
+// are either both natural (m = 0) or both have given rates.
 #pragma once
 
 #include <pliant/math/time_function.h>
@@ -123,7 +123,7 @@ class FormulaFunction final : public TimeFunction::Impl {
  private:
   /// Returns the kink between two adjacent floating-point times, or a Kink of infinite time if there is none.
   Kink between(double low, double high) const {
-    constexpr double smooth = 8;  // tolerance, in units of the change of a smooth function
+    constexpr double smooth = 8;  // tolerance, in units of the change that the slope predicts
     const Taylor2<double> a = at(low), b = at(high);
     auto apart = [&](double x, double y, double slope) {
       return std::abs(y - x) > smooth * slope * (high - low) + kKinkRounding * (std::abs(x) + std::abs(y));

@@ -20,7 +20,8 @@ struct Kink {
   double time = std::numeric_limits<double>::infinity();
   bool jumps = false;  ///< whether the value jumps, and not only the rate
 
-  /// Returns the earlier kink; at equal times the result jumps if one of the two does.
+  /// Returns the earlier kink. At equal times the value of the result jumps if the value of one of the two
+  /// jumps.
   Kink or_sooner(const Kink& other) const {
     if (time == other.time) return {time, jumps || other.jumps};
     return time < other.time ? *this : other;
@@ -49,13 +50,13 @@ class TimeFunction {
   /// Returns the value and the first and second time derivative at t (s).
   Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(first_value_); }
   double value(double t) const { return at(t).v; }
-  /// Returns the value at time 0, computed when the function was made. It may be read while another thread
-  /// adds keys to the function (LinearKeys).
+  /// Returns the value at time 0, computed when the function was made. Another thread may add keys to the
+  /// function (LinearKeys) at the same time.
   double first_value() const { return first_value_; }
   bool is_constant() const { return impl_ == nullptr; }
   /// Returns the first kink in the interval (after, until] (s), or a Kink of infinite time. For a formula,
-  /// the search compares the branches of the formula at 5 times of the interval, the ends included. It can
-  /// miss kinks in a long interval; the interval of one step is short enough.
+  /// the search compares the branches of the formula at 5 times of the interval, including the ends. The
+  /// search can miss kinks in a long interval; the interval of one step is short enough.
   Kink first_kink(double after, double until) const {
     return impl_ && after < until ? impl_->first_kink(after, until) : Kink();
   }

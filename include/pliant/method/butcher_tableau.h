@@ -8,7 +8,8 @@ namespace pliant {
 ///   u(x) = u_0 + x (u_1 - u_0 + y (a + x (b + y (h d_0 k + x (h d_1 k + y (...))))))),   y = 1 - x,
 /// with u_0 and u_1 at the start and at the end of the step, a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h
 /// k_end - a, as in cubic Hermite interpolation. k_i are the rates at all stages, at the end of the step and
-/// at the additional stages, in this order; k_end are those at the end of the step. d_j k = sum_i d_ji k_i.
+/// at the additional stages, in this order. k_end are the rates at the end of the step. d_j k = sum_i d_ji
+/// k_i.
 struct ContinuousExtension {
   int stages;       ///< additional stages, after the rates at the end of the step
   const double* a;  ///< row by row, one row for each additional stage: weights of all k_i before it

@@ -1,6 +1,6 @@
 // Function body of carry_momenta.h. In the body frame the angular momentum L of each part about its centre of
-// mass obeys L_dot = torque - omega x L. The new L is L + h torque, with L and the torque before the step,
-// rotated by -h omega, with omega after v <- v + h v_dot.
+// mass obeys L_dot = torque - omega x L. The new L is L + h torque, rotated by -h omega. L and the torque
+// have their values before the step; omega has its value after v <- v + h v_dot.
 #pragma once
 
 #include <pliant/method/carry_momenta.h>

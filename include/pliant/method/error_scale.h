@@ -20,8 +20,9 @@ class ErrorScale {
   ErrorScale(const Model& model, double tolerance);
   double tolerance() const { return tolerance_; }
 
-  /// Returns the largest error of all blocks, in tolerances. q_error, v_error: errors of the coordinates q
-  /// (of quaternions their components) and of the velocities. v: the velocities, which scale v_error.
+  /// Returns the largest error of all blocks, in tolerances. q_error: errors of the coordinates q; for
+  /// quaternions, errors of the four components. v_error: errors of the velocities. v: the velocities, which
+  /// scale v_error.
   double norm(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
   /// Returns the largest error of the coordinates alone, in tolerances.
   double norm(const VecX<double>& q_error) const;
@@ -38,7 +39,7 @@ class ErrorScale {
   const Model* model_;
   double tolerance_;
   /// For each velocity, the factor that scales the error of the parameter or local coordinate: 1/m, 1 for
-  /// angles, 1/(kg^(1/2) m) for modes. The entries of c and theta are not used.
+  /// angles, 1/(kg^(1/2) m) for modes. The entries of c_dot and omega are not used.
   VecX<double> parameter_;
 };
 

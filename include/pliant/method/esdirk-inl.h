@@ -19,8 +19,8 @@ namespace esdirk {
 
 inline constexpr int kStages = 6;
 inline constexpr double kGamma = 0.25;
-/// Entries below the diagonal, row by row. The diagonal entries are 0 in the first row and kGamma in the
-/// others. The last row has the weights of the method, whose last weight is kGamma.
+/// Entries below the diagonal, row by row. The diagonal entries are 0 in the first row and kGamma in all
+/// other rows. The last row has the weights of the method; the last weight is kGamma.
 inline constexpr double kA[kStages][kStages] = {
     {},
     {1. / 4},
@@ -33,7 +33,8 @@ inline constexpr double kC[kStages] = {0, 1. / 2, 83. / 250, 31. / 50, 17. / 20,
 inline constexpr double kB3[kStages] = {4586570599. / 29645900160, 0,
                                         178811875. / 945068544,    814220225. / 1159782912,
                                         -3700637. / 11593932,      61727. / 225920};
-/// Tolerance of the iteration of a stage if the simulation has none, in sizes of the part and radians.
+/// Tolerance of the iteration of a stage if the simulation has no tolerance, in sizes of the part and
+/// radians.
 inline constexpr double kStageTolerance = 1e-11;
 
 /// Returns the weight of a stage in the result of order 4; the stages are counted from 0.

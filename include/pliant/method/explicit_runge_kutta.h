@@ -33,13 +33,13 @@ class ExplicitRungeKutta : public Integrator {
   /// the rates in the columns of a stage.
   void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   /// Returns the dense output by the continuous extension of the tableau. Throws StepFailure or
-  /// InvertedElement if an additional stage leaves the range of the model.
+  /// InvertedElement if the model cannot be evaluated at an additional stage.
   StepPath dense_output(const Dynamics& dynamics, const State& low, double h, const State& high,
                         StepCounters& counters);
-  /// Returns whether the rates at the end of the last step are valid at this state and time: whether the last
-  /// step ended at this state and time, with equal gains of Baumgarte's terms.
+  /// Returns whether the rates at the end of the last step are valid at this state and time. The last step
+  /// must have ended at this state and time, with equal gains of Baumgarte's terms.
   bool end_rates_valid(const Dynamics& dynamics, double t, const State& state) const;
-  /// Returns the error of the step, in tolerances. v: the velocities at its start.
+  /// Returns the error of the step, in tolerances. v: the velocities at the start of the step.
   double estimate_error(double h, const VecX<double>& v);
 
   static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();

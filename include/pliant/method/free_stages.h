@@ -43,7 +43,7 @@ class FreeStages {
  private:
   struct PartStages {
     const Oscillators* oscillators;
-    int q0, v0;
+    int q0, v0;      ///< first entries of the oscillators in q and v
     MatX<double> n;  ///< loads: one column for each stage, and one for the end of the step
     std::vector<OscillatorPropagator> from_start;        ///< over c_i h, for each stage and the end
     std::vector<std::vector<VelocityResponse>> between;  ///< [i][j]: over (c_i - c_j) h, if a_ij is not 0

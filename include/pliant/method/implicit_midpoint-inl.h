@@ -17,7 +17,7 @@ namespace pliant {
 
 namespace implicit_midpoint {
 /// Tolerance of the iteration, in sizes of the part and radians. The iteration stops at changes of 0.02
-/// tolerances (kConverged in implicit/stage_solver-inl.h), which is a small multiple of rounding.
+/// tolerances (kConverged in implicit/stage_solver-inl.h), which are a small multiple of rounding errors.
 inline constexpr double kStageTolerance = 1e-13;
 }  // namespace implicit_midpoint
 

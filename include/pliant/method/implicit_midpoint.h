@@ -1,7 +1,6 @@
-// The implicit midpoint rule on (q, v, work), of second order: y+ = y + h f((y + y+) / 2). It conserves
-// quadratic invariants of (q, v). For a free rigid body these are the energy and the magnitude of the angular
-// momentum, for any number of steps. Quaternions keep unit length. The method is A-stable and does not damp
-// fast oscillations.
+// The implicit midpoint rule on (q, v, work), of second order: y+ = y + h f((y + y+) / 2). The rule conserves
+// quadratic invariants of (q, v). For a free rigid body, these are the energy and the magnitude of the
+// angular momentum. Quaternions keep unit length. The method is A-stable and does not damp fast oscillations.
 #pragma once
 
 #include <memory>

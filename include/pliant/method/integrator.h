@@ -38,7 +38,8 @@ class Integrator {
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns the largest number of velocities of one part for which the method can solve its equations.
   virtual Eigen::Index max_velocities() const { return std::numeric_limits<Eigen::Index>::max(); }
-  /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
+  /// Returns whether elasticity and damping of parts that deform locally are implicit. They then do not limit
+  /// the length of a step.
   virtual bool local_is_implicit() const { return false; }
 
   /// Returns the coordinates between two states `low` and `high` of the last step, h seconds apart: the dense
@@ -50,7 +51,8 @@ class Integrator {
 
   /// Returns p if the estimated error of a step is O(h^(p + 1)), or 0 if the method has no error estimate.
   virtual int error_order() const { return 0; }
-  /// Measures the errors of the next steps by this scale, which must outlive them; nullptr: no measurement.
+  /// Measures the errors of the next steps by this scale, which must outlive these steps; nullptr: no
+  /// measurement.
   void measure(const ErrorScale* scale) { scale_ = scale; }
   /// Returns the largest error of the steps since the last call, in tolerances, or NaN if one of the errors
   /// is NaN. Resets the error to 0.
@@ -72,7 +74,8 @@ class Integrator {
   double error_ = 0;
 };
 
-/// While the object exists, implicit parts respond to impulses as over a whole step (set_responses).
+/// While the object exists, implicit parts respond to impulses as they do over a whole step
+/// (Integrator::set_responses).
 class StepResponses {
  public:
   StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)

@@ -87,8 +87,7 @@ PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
 }
 
 /// Sets closed_string_was_slack_ if, at this evaluation, a closed string of an island with an implicit part
-/// does not pull. Such a string may still pull later in the step, and an evaluation at one moment cannot
-/// predict this.
+/// does not pull. This string may still pull later in the step, and the evaluation cannot predict this pull.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
@@ -217,8 +216,8 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
 }
 
 /// Ends the motion and projects strings, limits and joints with the response of implicit parts over a step.
-/// If parts responded by M^-1, as at one moment, the projection onto a string or limit would move only the
-/// pushed node, and add energy without bound.
+/// If parts responded by M^-1, the projection onto a string or limit would move only the pushed node, and
+/// would add energy without bound.
 PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
   end_motion(step);
   const StepResponses responses(*this, step.model(), step.work);

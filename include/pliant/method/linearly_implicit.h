@@ -7,11 +7,11 @@
 // explicit. The difference from the first-order solution u + h k1 estimates the error.
 //
 // An impact on a stiff part needs velocities v+ that agree with the displacement in the step,
-// q+ - q = h q_dot(v+). A step of ROS2 does not have this property. If a part that deforms locally may touch
-// something, or if a string or a limit stops it, a step of linearly implicit Euler replaces that of ROS2:
-// gamma = 1 and u+ = u + h k1, of first order. This step has the property. Impulses on a part change v+ by
-// (I - h A)^-1 M^-1 times the impulse, and q+ by h times this change; their work is that of an inelastic
-// impact.
+// q+ - q = h q_dot(v+). A step of ROS2 does not have this property, and a step of linearly implicit Euler has
+// it. If a part that deforms locally may touch something, or if a string or a limit stops it, a step of
+// linearly implicit Euler therefore replaces the step of ROS2: gamma = 1 and u+ = u + h k1, of first order.
+// Impulses on a part change v+ by (I - h A)^-1 M^-1 times the impulse, and q+ by h times this change. The
+// work of these impulses is the work of an inelastic impact.
 #pragma once
 
 #include <memory>
@@ -64,7 +64,7 @@ class LinearlyImplicit final : public Integrator {
   bool needs_first_order(const Model& model, const State& now) const;
 
   bool touching_ = false;     ///< whether parts that deform locally may touch something
-  bool first_order_ = false;  ///< whether the current or last step is one of linearly implicit Euler
+  bool first_order_ = false;  ///< whether the current or last step is a step of linearly implicit Euler
   /// Whether at an evaluation of this step a string did not pull, although its mode is JointMode::closed.
   /// Only strings of islands with an implicit part are checked.
   bool closed_string_was_slack_ = false;

@@ -1,6 +1,6 @@
-// ConstantsCache: the constants of prepared parts, found by the description from which they follow. The
-// search for mass points takes most of the time of Part::prepare(); parts with equal descriptions need one
-// search.
+// ConstantsCache stores the constants of prepared parts, each under a key computed from the description of
+// the part. The search for mass points takes most of the time of Part::prepare(); parts with equal
+// descriptions need only one search.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,15 @@
 
 namespace pliant {
 
-/// The bits of all settings of a part that its constants depend on (PartDescription::constants_key()).
+/// The bits of all settings on which the constants of a part depend (PartDescription::constants_key()).
 using ConstantsKey = std::vector<std::uint64_t>;
 
 class ConstantsCache {
  public:
   /// Returns the stored constants of parts with this key; nullptr if there are none.
   std::shared_ptr<const PartConstants> find(const ConstantsKey& key) const;
-  /// Stores constants. Removes those that no part uses any more, whenever the number of keys has doubled.
+  /// Stores constants. Whenever the number of keys has doubled, removes the constants that no part uses any
+  /// more.
   void store(ConstantsKey key, std::shared_ptr<const PartConstants> constants);
 
   /// Number of calls of store(): how often constants were computed.

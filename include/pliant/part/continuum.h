@@ -1,12 +1,12 @@
-// Continuum elasticity of the global parameters q_s. The strain energy E is that of the map from the rest
-// shape to the present shape s(u; q_s) of material points u,
+// Continuum elasticity of the global parameters q_s. s(u; q_s) is the current position of the material point
+// u, and E is the strain energy of the deformation from the rest shape to the current shape:
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // W is the energy density of the law, and P its first Piola-Kirchhoff stress. Damping adds beta P_v to P,
 // with P_v = F S(Gdot): S is Hooke's stress and Gdot the rate of Green's strain (local/solid/hooke.h). For
 // linear elasticity P_v is the linear stress at the strain rate sym(Fdot). The user gives material constants;
 // a matrix K_s is optional. F and its derivatives come from dual numbers: the dual part of a material point
-// is a direction in the rest body. The rest shape is that of time 0.
+// is a direction in the rest body. The rest shape has the rest values of the parameters at time 0.
 #pragma once
 
 #include <array>
@@ -41,7 +41,8 @@ struct ContinuumLawInfo {
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
 };
-/// Returns all laws. Each has the name of the corresponding law of local deformation (local/local_laws.h).
+/// Returns all laws. Each law has the same name as the corresponding law of local deformation
+/// (local/local_laws.h).
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
 /// Quadrature points of the rest body with derivatives along directions X of the rest body: x, y and z for a

@@ -8,7 +8,7 @@ struct Counters {
   long jacobian_points = 0;  ///< mass points or nodes whose J was evaluated
   long rate_points = 0;      ///< mass points or nodes whose Jdot qs_dot was evaluated
   long mass_matrices = 0;    ///< mass matrices computed
-  long inertial_forces = 0;  ///< vectors g_q evaluated; none is counted for a part at rest
+  long inertial_forces = 0;  ///< vectors g_q evaluated; a part at rest adds none
   long point_jets = 0;       ///< material points evaluated for forces, joints and recorded paths (tracks)
   long surfaces = 0;         ///< surfaces evaluated for output
   long strain_points = 0;    ///< quadrature points whose strain was evaluated

@@ -1,10 +1,10 @@
 // The sums of Eq. (11) over the mass points of a part:
 //   M = sum m G^T G            MassPointSums::add_mass()
 //   g_q = -sum m G^T b         MassPointSums::add_inertial_force()
-// with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot (inertia.h), and
-// the jets of single material points. In a step, only deformable parts whose s is not linear in q_s use these
-// sums. evaluate_inertia_of(), below, calls evaluate_rigid_inertia() for rigid parts, and LinearInertia
-// (linear_inertia-inl.h) for parts with s linear in q_s.
+// with G = [I, -[p]x, J] and b = omega x (omega x p) + 2 omega x (J q_s_dot) + Jdot q_s_dot (inertia.h). In a
+// step, only deformable parts whose s is not linear in q_s use these sums. evaluate_inertia_of(), below,
+// calls evaluate_rigid_inertia() for rigid parts, and LinearInertia (linear_inertia-inl.h) for parts with s
+// linear in q_s. This file also evaluates the jets of single material points.
 #pragma once
 
 #include <algorithm>
@@ -232,7 +232,7 @@ void sum_over_mass_points(const PartEvaluation& part, const MassPoints& points, 
     out.g_q.setConstant(P(0.0));
 }
 
-/// Computes g_q of a rigid part. constant: its M and first moment.
+/// Computes g_q of a rigid part. constant: M and the first moment of this part.
 template <class P>
 void gyroscopic_force(const Inertia<P>& constant, const Vec3<P>& omega, VecX<P>& g_q, Counters& counters) {
   g_q.resize(6);

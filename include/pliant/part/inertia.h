@@ -2,8 +2,8 @@
 // body frame:
 //   M = sum m G^T G,   g_q = -sum m G^T b,   G = [I, -[p]x, J],
 //   b = omega x (omega x p) + 2 omega x (J qs_dot) + Jdot qs_dot,
-// summed over mass points m at positions p, in the order (c, omega, q_s). The first block of M multiplies
-// R^T c_ddot. inertia-inl.h computes the sums.
+// summed over mass points m at positions p. The rows and columns are in the order (c, omega, q_s). The first
+// block of M multiplies R^T c_ddot. inertia-inl.h computes the sums.
 #pragma once
 
 #include <pliant/math/types.h>

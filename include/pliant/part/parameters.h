@@ -1,6 +1,6 @@
-// The global parameters of a part, Eq. (4): those of its shape, then those of the links of its chain of
-// deformations. Each parameter is frozen (a constant) or dynamic (a degree of freedom). The dynamic ones make
-// up q_s.
+// The global parameters of a part, Eq. (4): the parameters of its shape, then the parameters of the links of
+// its chain of deformations. Each parameter is frozen (a constant) or dynamic (a degree of freedom). q_s
+// contains the dynamic parameters.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-/// Maximum number of parameters of a part, frozen ones included.
+/// Maximum number of parameters of a part, including frozen parameters.
 inline constexpr int kMaxParameters = 64;
 
 struct Parameter {
@@ -57,9 +57,9 @@ class Parameters {
   const Parameter& moving(int k) const {
     return all_[static_cast<std::size_t>(dynamic_[static_cast<std::size_t>(k)])];
   }
-  /// Returns the number of the parameter of this name; -1 if there is none.
+  /// Returns the number of the parameter of this name; -1 if there is no such parameter.
   int find(const std::string& name) const;
-  /// Returns the place in q_s of the dynamic parameter of this name; -1 if there is none.
+  /// Returns the place in q_s of the dynamic parameter of this name; -1 if there is no such parameter.
   int dynamic_number(const std::string& name) const;
   /// Returns all names, separated by blanks.
   std::string names() const;
@@ -74,8 +74,8 @@ class Parameters {
   /// std::invalid_argument for more than kMaxGlobal dynamic parameters.
   void update();
 
-  /// Returns the values and rates of all parameters. Dynamic parameters have those of q_s and q_s_dot; frozen
-  /// parameters have their rest values and zero rates.
+  /// Returns the values and rates of all parameters. Dynamic parameters have the values and rates in q_s and
+  /// q_s_dot; frozen parameters have their rest values and zero rates.
   template <class P, class Q>
   ParameterValues<P> expand(const Q& q_s, const Q& q_s_dot) const {
     ParameterValues<P> values;

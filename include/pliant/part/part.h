@@ -29,7 +29,7 @@ class Part : public PartEvaluation {
 
   // The functions below are valid after prepare().
 
-  /// The results of prepare(). Parts that share them return one object.
+  /// The results of prepare(). Parts that share constants return the same object.
   const PartConstants& constants() const { return *constants_; }
 
   /// Number of local coordinates; 0 if the part does not deform locally.
@@ -75,7 +75,7 @@ class Part : public PartEvaluation {
   void use_given_inertia(PartConstants& out) const;
   /// Computes the mass points and the inertia at rest. Returns the volume of a solid (m^3) or the area of a
   /// shell (m^2) for elastic material. With a mass distribution the volume needs a second search; a part
-  /// without elastic material skips this search, and the result is then not its volume.
+  /// without elastic material skips this search, and the result is then not the volume.
   double compute_inertia(PartConstants& out) const;
   void compute_elasticity(double volume, PartConstants& out) const;
 };

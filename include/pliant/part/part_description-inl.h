@@ -437,7 +437,7 @@ PLIANT_INLINE std::optional<ConstantsKey> PartDescription::constants_key() const
   ConstantsKey key;
   detail::KeyWriter writer(key);
   const auto& self = part();
-  writer.add(&typeid(self));  // the type fixes the shape, and the chain unless it is composed at run time
+  writer.add(&typeid(self));  // the type fixes the shape, and the chain unless it is an AnyChain
   writer.add_count(parameters_.all_links().size());
   for (const LinkInfo& link : parameters_.all_links()) {
     writer.add(link.parameters);

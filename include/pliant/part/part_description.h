@@ -75,12 +75,13 @@ class PartDescription {
   Part& make_shell();
   /// Sets the total mass (kg). The masses of all mass points are scaled to this total.
   Part& mass(double total);
-  /// Sets the mass distribution mu(u), Eq. (11): density() times a function of the material point. Not with
-  /// inertia(), nor with local deformation by modes or polynomials.
+  /// Sets the mass distribution mu(u), Eq. (11): density() times a function of the material point. Cannot be
+  /// combined with inertia(), nor with local deformation by modes or polynomials.
   Part& distribute_mass(MassDistribution distribution);
-  /// Makes accelerations follow from the diagonal of M, section 5 of the paper: translation, rotation and
-  /// parameters are then not coupled by M. This is for comparisons. Energy and momenta are not conserved, and
-  /// a body whose centre of mass is not the origin of its frame falls wrongly. Not with local deformation.
+  /// Makes accelerations follow from the diagonal of M, section 5 of the paper: M then does not couple
+  /// translation, rotation and parameters. This option is for comparisons. Energy and momenta are not
+  /// conserved, and the free fall of a body whose centre of mass is not the origin of its frame is wrong.
+  /// Cannot be combined with local deformation.
   Part& use_diagonal_mass();
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
   /// of mass (m, body frame) of a rigid part. These values replace the density.
@@ -202,7 +203,7 @@ class PartDescription {
   std::unique_ptr<const LocalSettings> local_settings_;
   std::unique_ptr<const TimeFunction> local_factor_;
   std::unique_ptr<const ContinuumSettings> continuum_settings_;
-  MatX<double> stiffness_;  // K_s over all parameters, frozen ones included
+  MatX<double> stiffness_;  // K_s over all parameters, including frozen parameters
   double alpha_ = 0, beta_ = 0, drag_ = 0;
   bool fixed_ = false, shell_ = false, diagonal_mass_ = false, changed_ = true;
   Vec3<double> c0_ = Vec3<double>::Zero(), c0_dot_ = Vec3<double>::Zero(), omega0_ = Vec3<double>::Zero();

@@ -19,8 +19,8 @@ namespace pliant {
 namespace detail {
 
 /// Where a gradient is singular at a tip of the body, the gradient is evaluated at z (1 - kBelowTip) instead.
-/// A point with 1 - |z|/h <= kBelowTip is treated as a point at an end of the body. h: half height; z: before
-/// the deformation.
+/// A point with 1 - |z|/h <= kBelowTip is treated as a point at an end of the body. h: half height; z:
+/// coordinate before the deformation.
 inline constexpr double kBelowTip = 1e-9;
 
 /// Evaluates the positions of material points, four at a time. Calls store(i, jet, lane) for each point

@@ -31,7 +31,7 @@ class PartEvaluation : public PartDescription {
                         Inertia<double>& out, Counters& counters) const;
   void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
-  /// Computes g_q of a rigid part. constant: its M and first moment.
+  /// Computes g_q of a rigid part. constant: M and the first moment of this part (Part::rest_inertia()).
   static void rigid_force(const Inertia<double>& constant, const Vec3<double>& omega, VecX<double>& g_q,
                           Counters& counters);
   /// Computes position, J, J q_s_dot and Jdot q_s_dot of material points in the body frame, without local
@@ -41,7 +41,7 @@ class PartEvaluation : public PartDescription {
   void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
               const VecMax<Dual<1>>& q_s_dot, std::vector<PointJet<Dual<1>>>& out, Counters& counters) const;
 
-  // Geometry, in the body frame. values: all parameters, frozen ones included.
+  // Geometry, in the body frame. values: all parameters, including frozen parameters.
 
   /// Returns the reference shape s of n material points, m: 3 x n.
   Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
@@ -107,7 +107,7 @@ class PartEvaluation : public PartDescription {
   /// Returns the position that the chain maps to p (m, body frame).
   virtual Vec3<double> inverse_chain(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
-  /// The constants; those of a default PartConstants before Part::prepare().
+  /// The constants of the part; before Part::prepare() a PartConstants without data.
   std::shared_ptr<const PartConstants> constants_ = no_constants();
 
  private:

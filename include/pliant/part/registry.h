@@ -23,8 +23,8 @@ struct DeformationInfo {
 const std::vector<DeformationInfo>& all_deformations();
 
 /// Returns a new part with the named shape and a chain of the named deformations, applied in this order.
-/// density: kg/m^3 of a solid, kg/m^2 of a shell. Throws std::invalid_argument for the unknown name of a
-/// shape or deformation; the message lists the known names.
+/// density: kg/m^3 of a solid, kg/m^2 of a shell. Throws std::invalid_argument if the name of the shape or of
+/// a deformation is unknown; the message lists the known names.
 std::unique_ptr<Part> make_part(const std::string& name, const std::string& shape,
                                 const std::vector<std::string>& deformations, double density);
 

@@ -31,8 +31,8 @@ class ShapeInterface {
   virtual double half_height(ShapeParameters a) const = 0;
   /// Returns w of the material point at x (m): 1 on the surface, below 1 inside, above 1 outside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the gradient of gauge() at x (m), 1/m. On the surface it has the direction of the outward
-  /// normal.
+  /// Returns the gradient of gauge() at x (m), 1/m. On the surface the gradient has the direction of the
+  /// outward normal.
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point (u, v, w) with e(u, v, w) = x (m).
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
@@ -43,8 +43,8 @@ class ShapeInterface {
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
   /// Returns the half sizes if the shape is a box, m; else nullopt.
   virtual std::optional<Vec3<double>> half_sizes(ShapeParameters a) const = 0;
-  /// Returns the number of pieces whose convex hull is that of the solid; 0 if the shape has no support
-  /// function.
+  /// Returns the number of pieces whose convex hull equals the convex hull of the solid; 0 if the shape has
+  /// no support function.
   virtual int hull_pieces() const = 0;
   /// Returns the point (metres, body frame) of a piece of the hull that is farthest in the direction of the
   /// vector m. m: body frame, not zero. piece: from 0. The farthest of the points of all pieces is on the
@@ -78,7 +78,7 @@ class ShapeInterface {
 
   /// Returns the rest map and its derivatives, as tangents() does for e.
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
-  /// Returns the material point of the shape whose position is that of the rest map at m.
+  /// Returns the material point of the shape at the position that the rest map gives for m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
   /// Returns the panels of the quadrature along u. dynamic_exponents: whether an exponent is a degree of
   /// freedom.
@@ -93,7 +93,7 @@ class ShapeInterface {
   /// Returns the area and the means of x^2 and y^2 of the plane section at zeta = z / h. gap: 1 - |zeta|.
   /// Must be called only if has_sections().
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
-  /// Returns the panels of the quadrature along zeta over plane sections; none without has_sections().
+  /// Returns the panels of the quadrature along zeta over plane sections; empty if has_sections() is false.
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
 };
 

@@ -44,7 +44,7 @@ void shape_jets_alone(int k, const LinkParameters<P>& parameters, const Material
   batch.n_columns = 1;
 }
 
-/// The formulas of shape_jets().
+/// Implements shape_jets().
 template <class Shape, class P, class S, class U>
 void fill_shape_jets(const LinkParameters<P>& parameters, const Material<U>* material, JetBatch<S>& batch) {
   constexpr int K = shape_size<Shape>;
@@ -74,7 +74,7 @@ void fill_shape_jets(const LinkParameters<P>& parameters, const Material<U>* mat
     a_t[k] = parameters.dynamic[k] ? T(a[k], S(parameters.b_dot[k]), S(0.0)) : T(a[k]);
     a_d[k] = D::variable(a[k], k);
   }
-  // J and the rates in one pass, so that the compiler computes their common subexpressions once.
+  // One pass computes J and the rates, so that the compiler computes their common subexpressions once.
   auto evaluate = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       const Material<U> m = material[i];

@@ -24,10 +24,10 @@ namespace assembly {
 /// Largest rotation of a part in one step of the iteration, rad, and largest change of a parameter: relative
 /// for lengths, absolute for other parameters.
 inline constexpr double kMaxRotation = 0.5, kMaxChange = 0.3;
-/// The cost of rigid motion: eps, in units of the smallest ratio of stiffness to inertia.
+/// First and smallest cost eps of rigid motion, in units of the smallest ratio of stiffness to inertia.
 inline constexpr double kRigidFirst = 1e-6;
 /// The shape has converged if the length of a step (rad, see Assembly::step()) is at most kConverged. A
-/// relative decrease of the merit below kConverged counts as no decrease.
+/// relative decrease of the merit below kConverged is regarded as no decrease.
 inline constexpr double kConverged = 1e-9;
 /// Merits of closed configurations are equal within this relative difference.
 inline constexpr double kEqualMerit = 1e-12;
@@ -35,18 +35,18 @@ inline constexpr double kEqualMerit = 1e-12;
 /// the start of the run closes without loss of accuracy.
 inline constexpr double kProjectedGap = 1e-9;
 inline constexpr int kMaxIterations = 400;
-/// An island cannot close if its gap does not decrease below kProgress of its value in kPatience iterations
-/// and, if any parameter has a stiffness, the merit does not decrease either. kMaxHalvings: largest number of
-/// times that the line search halves a step. kMaxAttempts: largest number of times that one step is computed
-/// again with a larger cost of rigid motion.
+/// An island cannot close if kPatience iterations do not reduce its gap below kProgress times the earlier
+/// value. If any parameter has a stiffness, these iterations must not reduce the merit either. kMaxHalvings:
+/// largest number of times that the line search halves a step. kMaxAttempts: largest number of times that one
+/// step is computed again with a larger cost of rigid motion.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
-/// Largest number of joints that a message names, without the one with the largest gap.
+/// Largest number of joints that a message names, in addition to the joint with the largest gap.
 inline constexpr int kMaxNamed = 8;
-/// The cost of rigid motion is multiplied by kCostIncrease, while any parameter has a stiffness and all gaps
-/// are at most kNearGap lengths, if a step is longer than kMaxStepSize allowed steps or does not decrease the
-/// merit. A step that is accepted at the first attempt without being halved divides the cost by
-/// kCostDecrease.
+/// If a step is longer than kMaxStepSize times the allowed step, or does not decrease the merit, the cost of
+/// rigid motion is multiplied by kCostIncrease and the step is computed again. This is done only if a
+/// parameter has a stiffness and all gaps are at most kNearGap lengths. A step that is accepted at the first
+/// attempt without being halved divides the cost by kCostDecrease.
 inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCostDecrease = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -106,7 +106,7 @@ class Assembly {
       best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
       if (!closed && since_gap > kPatience && (!stiff_ || since_merit > kPatience)) fail(i);
-      // The remaining changes of gaps and shape are rounding.
+      // The remaining changes of gaps and shape are rounding errors.
       if (now <= kProjectedGap && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kConverged) return i;
@@ -138,7 +138,8 @@ class Assembly {
     return closed;
   }
 
-  /// Returns the smallest ratio of stiffness to inertia over the parameters; infinite if none has stiffness.
+  /// Returns the smallest ratio of stiffness to inertia over the parameters; infinite if no parameter has
+  /// stiffness.
   double smallest_stiffness_ratio() {
     dynamics_.evaluate_masses(state_.time(), state_.q, state_.v, island_.parts, work_);
     double least = kInfinite;
@@ -169,8 +170,7 @@ class Assembly {
     }
   }
 
-  /// Fixes the nodes of a part: the metric is that of c, theta and q_s, with a very large inertia of the
-  /// nodes.
+  /// Gives the nodes of a part a very large inertia in the metric, so that only c, theta and q_s change.
   static void fix_nodes(PartWorkspace<double>& w) {
     constexpr double immovable = 1e12;
     MatX<double>&A = w.local->A, &M = w.inertia.M;
@@ -238,9 +238,9 @@ class Assembly {
     return x;
   }
 
-  /// Closes the gaps that remain after a step because the constraints are curved, while the iteration
-  /// converges. Without this second-order correction, steps along curved constraints are short (Maratos
-  /// 1978).
+  /// Closes the gaps that remain after a step because the constraints are curved. Ends when the iteration
+  /// converges no longer. Without this second-order correction, steps along curved constraints are short
+  /// (Maratos 1978).
   void correct_curvature(const Group<double, Eigen::Dynamic>& group) {
     double before = projection::kMaxGap / projection::kSlow;
     for (double now = gap(); now <= projection::kSlow * before && !is_closed(); now = gap()) {
@@ -260,8 +260,8 @@ class Assembly {
     }
   }
 
-  /// Returns the merit: elastic energy plus penalty times gap for every gap. The penalty is larger than all
-  /// joint forces, so that the merit decreases along every step that is short enough.
+  /// Returns the merit: the elastic energy plus the penalty times the sum of all gaps. The penalty is larger
+  /// than all joint forces, so that the merit decreases along every step that is short enough.
   double merit() const {
     double sum = 0;
     for_each_gap([&](int, double gap, const JointModel&) { sum += penalty_ * gap; });

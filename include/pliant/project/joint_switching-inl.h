@@ -21,12 +21,12 @@ namespace projection {
 /// |t|.
 inline constexpr double kKinkMargin = 2;
 
-/// An impulse below this share of impulse_scale() is rounding.
+/// An impulse below this share of impulse_scale() is a rounding error.
 inline constexpr double kImpulseRounding = 1e-9;
 
-/// Returns a scale of the impulses of a joint, N s: a mass times a speed. The mass is that of the lightest
-/// part of the joint. The speed is the largest speed of its parts, and at least Stabilization::rate times the
-/// length of the joint.
+/// Returns a scale of the impulses of a joint, N s: a mass times a speed. The mass is the mass of the
+/// lightest part of the joint. The speed is the largest speed of these parts, and at least
+/// Stabilization::rate times the length of the joint.
 inline double impulse_scale(const Model& model, const JointModel& joint, const VecX<double>& v) {
   double mass = std::numeric_limits<double>::infinity(),
          speed = model.body().stabilization.rate * joint.length;

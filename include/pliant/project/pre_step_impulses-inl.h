@@ -1,5 +1,5 @@
 // The function pre_step_impulses() of project.h: impulses at the start of a step of semi-implicit Euler, so
-// that limits, strings and joints, C = 0 of Eq. (12), are satisfied at its end.
+// that limits, strings and joints, C = 0 of Eq. (12), are satisfied at the end of the step.
 #pragma once
 
 #include <pliant/project/project.h>
@@ -18,8 +18,8 @@ namespace pliant {
 
 namespace projection {
 
-/// The iterations end if an iteration leaves more than this share of the largest gap: the remaining gaps are
-/// rounding errors.
+/// The iterations end if an iteration leaves more than this share of the largest gap, because the remaining
+/// gaps are then rounding errors.
 inline constexpr double kStalledAhead = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxRotationClosing = 0.2;
@@ -54,11 +54,12 @@ inline bool has_closing_joint(const Island& island, const Workspace<double>& wor
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// Limits the rotation, in the step, of each part of an island with a closing joint to kMaxRotationClosing,
-/// or to the rotation with its velocity at the start of the step if that is larger. The force of an open
-/// joint can make a part oscillate about the joint with growing energy. The velocities of the centres of mass
-/// do not change. before: velocities at the start of the step. x: velocities of the group, which are changed.
-/// capped: scratch storage. Returns the work of the change, J.
+/// Limits the rotation in the step of each part of an island with a closing joint, and returns the work of
+/// the change, J. The limit is kMaxRotationClosing, or the rotation with the angular velocity at the start of
+/// the step if this rotation is larger. Without the limit, the force of an open joint could make a part
+/// oscillate about the joint with growing energy. The velocities of the centres of mass do not change.
+/// before: velocities at the start of the step. x: velocities of the group, which are changed. capped:
+/// scratch storage.
 template <int Max>
 double limit_rotations(const Group<double, Max>& group, const VecX<double>& before, double h,
                        VecMax<double, Max>& x, VecMax<double, Max>& capped) {
@@ -90,7 +91,7 @@ bool crosses(const Group<double, Max>& group, double h, const State& state) {
   return false;
 }
 
-/// Sets the limit modes of the parameters of a group to those at the end of the step.
+/// Sets the limit modes of the parameters of a group to the modes at the end of the step.
 template <int Max>
 void update_limit_modes(const Group<double, Max>& group, double h, State& state) {
   for (int i = 0; i < group.parts(); ++i) {
@@ -99,8 +100,8 @@ void update_limit_modes(const Group<double, Max>& group, double h, State& state)
       const double q = state.q[m.q0 + 7 + k], q_end = q + h * state.v[m.v0 + 6 + k];
       const Range range = m.limits[at(k)];
       limit_mode(state, m, k) = q_end <= range.min ? -1 : (q_end >= range.max ? 1 : 0);
-      // A rate that does not change q in floating-point arithmetic is rounding of other impulses: it is set
-      // to zero.
+      // A rate that does not change q in floating-point arithmetic is a rounding error of other impulses, and
+      // is set to zero.
       if (limit_mode(state, m, k) != 0 && q_end == q) state.v[m.v0 + 6 + k] = 0;
     }
   }
@@ -165,10 +166,10 @@ class PreStep {
     return true;
   }
 
-  /// Evaluates the joints at the end of the step, and adds to x the impulses at the start of the step that
-  /// close the joints at its end. The impulses change the displacement h v (the method SHAKE; Ryckaert,
-  /// Ciccotti & Berendsen 1977); projection of q alone would change the energy of rotating parts. largest: as
-  /// for close_gaps(). Returns whether x was changed.
+  /// Evaluates the joints at the end of the step. Adds to x the impulses at the start of the step that close
+  /// the joints at the end, and returns whether x was changed. The impulses change the displacement h v (the
+  /// method SHAKE; Ryckaert, Ciccotti & Berendsen 1977); projection of q alone would change the energy of
+  /// rotating parts. largest: as for close_gaps().
   bool close_joints_ahead(double& largest) {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
@@ -183,7 +184,7 @@ class PreStep {
 
   /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false,
   /// without a change, if these gaps are rounding errors or no longer decrease. largest: on entry the largest
-  /// gap of the last iteration, on return that of this iteration, relative to rounding.
+  /// gap of the last iteration, on return the largest gap of this iteration, relative to rounding.
   bool close_gaps(double& largest) {
     VecX<double>& error = vectors_.rows;
     error.setZero(island_->rows);
@@ -200,9 +201,9 @@ class PreStep {
     return true;
   }
 
-  /// Returns the smallest velocity of a row that the limits allow: at this velocity the parameter is at its
-  /// limit, or the string at its length, at the end of the step, or the string rebounds. Returns -infinity if
-  /// the row has no bound.
+  /// Returns the smallest velocity of a row that the limits allow; -infinity if the row has no bound. With
+  /// this velocity, at the end of the step the parameter is at its limit or the string has its length. If the
+  /// string rebounds, the velocity is the velocity of the rebound.
   double min_velocity(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];

@@ -10,22 +10,23 @@
 namespace pliant {
 
 /// An open joint becomes closed if its gap is at most kClosedGap times the size of its smaller part, and the
-/// rate of the gap at most kClosedRate times this size times Stabilization::rate. For methods of first order
-/// both limits are larger while the joint rotates (close_joints in project_joints-inl.h).
+/// rate of the gap is at most kClosedRate times this size times Stabilization::rate. For methods of first
+/// order both limits are larger while the joint rotates (close_joints() in project_joints-inl.h).
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
 /// Engages the joints of an island that begin to act. If closed joints are projected, joints with a small gap
-/// become closed, at any rate of the gap. Closing strings with a small excess become closed or slack.
-/// Impulses make the velocities agree with the closed joints. On return step.work is an evaluation of the
-/// joints of the island. scratch: scratch storage; its contents are ignored. impulses: the impulses on the
-/// rows of all joints are added to it, N s. The change of energy goes to Work::projection, or to Work::limits
-/// if the projection moved a parameter back to a limit, or pulled a string, and this limit or string did not
-/// push in the last evaluation.
+/// become closed, at any rate of the gap. A closing string becomes slack if the distance of its ends is below
+/// its length, and closed if the string is slightly too long.
+/// Impulses make the velocities agree with the closed joints. The function adds these impulses (N s), on the
+/// rows of all joints, to `impulses`. On return step.work is an evaluation of the joints of the island.
+/// scratch: scratch storage; its contents are ignored. The change of energy is added to Work::projection. It
+/// is added to Work::limits if the projection moved a parameter back to a limit, or pulled a string, and this
+/// limit or string did not push in the last evaluation.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
-/// Applies the impulses that make the velocities of an island agree with the new rates of prescribed paths,
-/// where these rates jump. The work goes to Work::anchors. impulses: as for engage_joints.
+/// Applies the impulses that make the velocities of an island agree with the new rates of prescribed paths at
+/// a kink, where these rates jump. The work is added to Work::anchors. impulses: as for engage_joints().
 void follow_paths(StepContext& step, const Island& island, VecX<double>& impulses);
 
 /// Scratch storage of pre_step_impulses(); its contents are ignored.
@@ -34,13 +35,12 @@ struct PreStepStorage {
   Workspace<double> ahead;  ///< evaluation of the joints at q_end
 };
 /// Applies impulses before the coordinates move by h v. With these impulses, at the end of the step every
-/// parameter is within its limits, the ends of every slack or closed string are at most its length apart
-/// (closing strings are excepted), and closed joints have no gap if they are projected. Sleeping
-/// islands are skipped. step.work: the evaluation at the start of the step. v_start: the velocities at the
-/// start of the step.
+/// parameter is within its limits, no slack or closed string is longer than its length, and closed joints
+/// have no gap if they are projected. Sleeping islands are skipped. step.work: the evaluation at the start of
+/// the step. v_start: the velocities at the start of the step.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
-/// Sets each parameter that is at a limit by State::at_limit exactly to the value of this limit.
+/// Sets each parameter that is at a limit according to State::at_limit exactly to the value of this limit.
 void clamp_to_limits(const Model& model, State& state);
 
 /// Ends the motion of a step at step.t: velocities without inertia are set to zero, quaternions are
@@ -50,7 +50,7 @@ void end_motion(StepContext& step);
 /// Projects the frames of parts that deform locally onto their reference conditions W^T d = 0 at step.t. No
 /// node moves in the world. Throws NumericalFailure if the conditions no longer determine the frame.
 void project_frames(StepContext& step);
-/// Projects the frames of the parts with these numbers.
+/// Projects the frames of some parts. parts: numbers of these parts.
 void project_frames(StepContext& step, const std::vector<int>& parts);
 
 /// For parts without joints: projects parameters that have passed a limit in the step that ends at step.t

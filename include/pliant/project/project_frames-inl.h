@@ -22,7 +22,7 @@ namespace pliant {
 
 namespace projection {
 
-/// Changes of the frame below this share of the size of the part are rounding.
+/// Changes of the frame below this share of the size of the part are rounding errors.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
 /// K is regular if |sum m d s^T| over the nodes (mass m, displacement d, reference position s) is at most
@@ -72,7 +72,7 @@ inline void check_condition(const PartModel& m, const LocalWorkspace& local, dou
   throw NumericalFailure(message.str(), t);
 }
 
-/// Throws the failure of a part whose frame does not converge.
+/// Throws NumericalFailure for a part for which the iteration of project_frame() does not converge.
 [[noreturn]] inline void fail_to_follow(const PartModel& m, const StepContext& step) {
   std::ostringstream message;
   message << "the nodes of part '" << m.part->name()

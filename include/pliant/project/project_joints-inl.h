@@ -35,7 +35,7 @@ class Snapshot {
     vectors_.v.resize(n_v);
     exchange(state, [](auto&& stored, auto&& now) { stored = now; });
   }
-  /// Exchanges the stored values with those of the state.
+  /// Exchanges the stored values with the values of the state.
   void swap(State& state) {
     exchange(state, [](auto&& stored, auto&& now) { stored.swap(now); });
   }
@@ -75,8 +75,8 @@ inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& 
 
 /// Sets the velocities of parts whose coordinates the projection has changed, so that their generalised
 /// momenta M v, and P and L, do not change. For a part that deforms locally, only P and L are restored; the
-/// velocities of its nodes relative to its frame are kept. before: evaluation at the coordinates before the
-/// projection; now: after it.
+/// velocities of its nodes relative to its frame are kept. before, now: evaluations at the coordinates before
+/// and after the projection.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {
@@ -106,8 +106,8 @@ inline const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& gro
 }
 
 /// Projects a group onto its joints and limits. closed: whether joints of the group have just become closed.
-/// step.work: an evaluation of the group. scratch: scratch storage; its contents are ignored. impulses: if
-/// given, the impulses that close joints are added to it, N s.
+/// step.work: an evaluation of the group. scratch: scratch storage; its contents are ignored. If `impulses`
+/// is given, the function adds to it the impulses that close joints, N s.
 template <int Max>
 void project_group(StepContext& step, const Group<double, Max>& group, bool closed,
                    Workspace<double>& scratch, VecX<double>* impulses = nullptr) {
@@ -155,9 +155,9 @@ inline bool passes_limit(const PartModel& m, State& state) {
 
 /// Sets the mode of open joints with a small gap and a small rate of the gap to closed. any_rate: whether the
 /// rate may be large. A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint,
-/// with bias = -gamma of Eq. (13) and the gains alpha and beta of Baumgarte's terms. With such a method, the
-/// bound of a small gap is therefore larger by twice this gap, up to kMaxGap, and the bound of a small rate
-/// grows with it. Returns whether any joint closed.
+/// with bias = -gamma of Eq. (13) and the gains alpha and beta of Baumgarte's terms. For methods of first
+/// order, the bound of a small gap is therefore larger by twice this gap, up to kMaxGap. The bound of a small
+/// rate is increased by twice this gap times the rotation rate. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -184,13 +184,13 @@ inline bool close_joints(const Dynamics& dynamics, const Island& island, bool an
   return any_closed;
 }
 
-/// The gap of a joint closes if it shrinks faster than this share of beta times the gap.
+/// A gap is regarded as closing if it shrinks faster than this share of beta times the gap, m/s.
 inline constexpr double kClosingShare = 0.1;
 
-/// Throws UnsatisfiableModel for a joint that should have closed by now, whose gap no longer shrinks, and
-/// which cannot close because its rows depend on rows of other joints that contradict them. step.work: the
-/// last evaluation of the step that ends at step.t. patience: time after which a joint should have closed, in
-/// units of 1 / beta; with 0, a joint whose gap still shrinks fails, too.
+/// Throws UnsatisfiableModel if a joint should have closed by now, its gap no longer shrinks, and rows of
+/// other joints contradict its rows. step.work: the last evaluation of the step that ends at step.t.
+/// patience: time after which a joint should have closed, in units of 1 / beta; if it is 0, the function also
+/// throws for a gap that still shrinks.
 inline void fail_on_unclosable_joint(StepContext& step, const Island& island, double patience = kPatience) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;
@@ -228,8 +228,8 @@ inline void fail_on_unclosable_joint(StepContext& step, const Island& island, do
   std::for_each(island.strings.begin(), island.strings.end(), check_joint);
 }
 
-/// Sets the mode of closing strings that exceed their length by a small gap at most: slack if a string is
-/// shorter than its length, otherwise closed.
+/// Sets the mode of closing strings, except of strings that are too long by more than a small gap. The mode
+/// becomes slack if the distance of the ends is below the length of the string, otherwise closed.
 inline void close_strings(const Model& model, const Island& island, const Workspace<double>& work,
                           State& state) {
   for (const int j : island.strings) {

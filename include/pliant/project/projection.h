@@ -23,8 +23,8 @@ namespace pliant::projection {
 /// rounding of coordinates, relative to their size.
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
 /// If an iteration leaves more than the share kSlow of the error, the next iteration uses a new factorisation
-/// of C_q M^-1 C_q^T. If an iteration with a new factorisation leaves more than the share kStalled, the error
-/// is the rounding of the rows.
+/// of C_q M^-1 C_q^T. If an iteration with a new factorisation leaves more than the share kStalled, the
+/// remaining error is a rounding error of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
 /// The projection cannot close a joint if its gap afterwards is above this multiple of rounding().
@@ -35,19 +35,19 @@ inline constexpr int kMaxNamed = 8;
 /// above this share of all reactions.
 inline constexpr double kDependentShare = 1e-6;
 /// Largest gap, in sizes of the smaller part of the joint, at which a joint can become closed. If a
-/// projection fails from a larger gap, the step is reported as too long.
+/// projection fails and the gap before it was larger, the step is reported as too long.
 inline constexpr double kMaxGap = 0.1;
 /// A joint cannot close if other joints contradict it, and its gap is above kStuckGap lengths of the joint
 /// after it has acted for a time of kPatience / beta. beta: Baumgarte's factor, 1/s.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
-/// A projection whose independent rows differ from those at the start of the step may undo at most this share
-/// of the motion.
+/// A projection with other independent rows than at the start of the step may undo at most this share of the
+/// motion.
 inline constexpr double kMaxUndoneShare = 0.25;
 /// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
 inline constexpr double kTaut = 1e-9;
 
-/// Rates of one-sided joints slower than this, in sizes of the joint times Stabilization::rate, do not
-/// rebound.
+/// A one-sided joint does not rebound if the magnitude of its rate C_dot is below this number, in units of
+/// the size of the joint times Stabilization::rate.
 inline constexpr double kMinRebound = 1e-3;
 
 /// Returns whether a one-sided joint that stops a motion with the rate C_dot (m/s) rebounds.
@@ -56,7 +56,7 @@ inline bool rebounds(const Model& model, const JointModel& joint, double C_dot) 
          -C_dot > kMinRebound * joint.length * model.body().stabilization.rate;
 }
 
-/// Returns the gap of a joint, m, below which a gap is rounding.
+/// Returns the gap of a joint, m, up to which a gap is a rounding error.
 inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   double size = 0;
   for (const JointSide& side : joint.sides)
@@ -72,7 +72,7 @@ inline RigidIsland::Rounding rounding(const Model& model) {
 inline std::size_t island_index(const Model& model, const Island& island) {
   return static_cast<std::size_t>(&island - model.islands().data());
 }
-/// Returns the rigid workspace of an island, or nullptr if the last evaluation of the island did not use one.
+/// Returns the rigid workspace of an island, or nullptr if the last evaluation of the island did not use it.
 inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& work) {
   if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return nullptr;
   return &work.rigid[at(island.rigid)];
@@ -83,7 +83,7 @@ inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
 
-/// Returns the storage of an island, or of a part without joints.
+/// Returns the vectors in the workspace for a group: an island, or a part without joints.
 template <int Max>
 GroupVectors<double, Max>& group_vectors(const Group<double, Max>& group, Workspace<double>& work) {
   if constexpr (Max == Eigen::Dynamic)
@@ -139,7 +139,7 @@ class Projection {
  public:
   using Vector = VecMax<double, Max>;
 
-  /// vectors: storage; its contents are ignored.
+  /// vectors: storage; coordinates() reads vectors.q.
   Projection(StepContext& step, const Group<double, Max>& group, GroupVectors<double, Max>& vectors)
       : step_(step),
         model_(step.model()),
@@ -177,16 +177,16 @@ class Projection {
     throw NumericalFailure(message.str(), step_.t);
   }
 
-  /// Forgets the last evaluation: the state has changed.
+  /// Forgets the last evaluation, because the state has changed.
   void forget() { evaluated_ = false; }
-  /// Adds the impulses of velocities(), on the rows of all joints, to `impulses` from now on.
+  /// Makes velocities() add its impulses on the rows of all joints, N s, to `impulses`.
   void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
   /// Projects the velocities onto C_dot = 0; the rate of a parameter at a limit, or of a taut string, may
   /// only lead away from the bound. Sets State::at_limit of the group, and sets parameters that have passed a
   /// limit exactly to the limit. Returns the number of impulses on one-sided rows that were not active
-  /// before. joints, one_sided: the works (J) of the impulses of the joints and of the one-sided rows are
-  /// added to them.
+  /// before. Adds the work (J) of the impulses of the joints to `joints`, and the work of the impulses of the
+  /// one-sided rows to `one_sided`.
   int velocities(double& joints, double& one_sided) {
     rank_ = RankRule::decide;
     int impulses = 0;
@@ -233,8 +233,8 @@ class Projection {
   }
 
   /// Returns the failure of a joint that is open by a gap (m) and cannot close, with the names of the joints
-  /// that hold it open. open: number of the joint. dependent: number of the joint with the dependent rows,
-  /// which is this joint or one that contradicts it.
+  /// that keep it open. open: number of the joint. dependent: number of the joint with the dependent rows:
+  /// `open`, or a joint that contradicts this joint.
   UnsatisfiableModel contradiction(int open, double gap, int dependent) const {
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
@@ -354,8 +354,8 @@ class Projection {
   }
 
   /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
-  /// these rows are zero to rounding, if an iteration no longer reduces them, or if there are none: for a
-  /// part without joints, and for joints that are not projected.
+  /// these rows are zero to rounding, or if an iteration no longer reduces them. Also returns false for a
+  /// part without joints, and if joints are not projected.
   bool correct_joints(Rows kind, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
     evaluate(kind, iteration, x);
@@ -406,7 +406,7 @@ class Projection {
   }
 
   /// Returns the failure of a closed joint with a gap above rounding, or of a string that is too long, with
-  /// the names of the joints that hold it open; none if there is no such joint.
+  /// the names of the joints that keep it open; nothing if there is no such joint or string.
   std::optional<UnsatisfiableModel> open_joint() {
     if (!evaluated_ && !island_->strings.empty())
       step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
@@ -414,7 +414,7 @@ class Projection {
     double widest = 0;
     auto consider = [&](int j, double gap, double allowed) {
       if (state_.joints[at(j)] != JointMode::closed || !(gap > allowed) || gap <= widest) return;
-      if (!std::isfinite(gap)) return;  // the check of the state reports it
+      if (!std::isfinite(gap)) return;  // the check of the state reports this gap
       open = j;
       widest = gap;
     };
@@ -451,8 +451,8 @@ class Projection {
     return false;
   }
 
-  /// Returns whether a one-sided row stays active: the last evaluation pushed on this row or its opposite,
-  /// and a string is still taut. Always false for a part without joints.
+  /// Returns whether a one-sided row stays active: the last evaluation pushed on this row or on the opposite
+  /// row. A string must also have the mode JointMode::closed. Always false for a part without joints.
   bool remains_active(const OneSidedRow& row) const {
     if (island_ == nullptr) return false;
     if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
@@ -461,7 +461,7 @@ class Projection {
                        [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
   }
 
-  /// Marks a string that this projection has pushed: at the end it has exactly its length.
+  /// Marks a string that this projection has pulled. Further iterations keep the string at its length.
   void mark_pulled(int k) {
     if (!was_pulled(k)) pulled_strings_.push_back(k);
   }

@@ -1,12 +1,12 @@
-// The camera of a picture, and an automatic one for a box.
+// The camera of a picture, and an automatic camera that shows a box.
 #pragma once
 
 #include <Eigen/Geometry>
 
 namespace pliant {
 
-/// Positions are in the world frame, m. The vertical field of view is given; the horizontal one follows from
-/// the aspect of the picture.
+/// Positions are in the world frame, m. The vertical field of view is given; the horizontal field of view
+/// follows from the aspect of the picture.
 struct Camera {
   Eigen::Vector3d eye = {4, -6, 3};
   Eigen::Vector3d target = {0, 0, 0};

@@ -15,9 +15,9 @@
 
 namespace pliant {
 
-/// Makes the picture at any time of a recording: that of its state (StatePicture) with the tracks up to that
-/// time. All frames of a run have the same camera, ground and scale of values. If the scene does not set
-/// these, they are computed from the whole recorded motion.
+/// Makes the picture at any time of a recording: the picture of the state at this time (StatePicture), with
+/// the tracks up to this time. All frames of a run have the same camera, ground and scale of values. If the
+/// scene does not set these, they are computed from the whole recorded motion.
 class Film {
  public:
   /// scene, model, recording: must outlive the film. Throws RecordingMismatch, and std::out_of_range if the
@@ -48,8 +48,8 @@ struct FilmSource {
 };
 
 /// Draws the given frames into an existing folder, as frame_000000.png and so on; frame i is at the time
-/// i / frame_rate (s). The size of the pictures is that of the scene. Throws what Film, Renderer and
-/// write_png throw.
+/// i / frame_rate (s). The scene gives the size of the pictures. Throws what Film, Renderer and write_png
+/// throw.
 void render_frames(const std::filesystem::path& folder, const FilmSource& source, double frame_rate,
                    const std::vector<std::int64_t>& frames, Progress& progress,
                    GlBackend backend = GlBackend::automatic);

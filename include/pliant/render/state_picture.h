@@ -12,7 +12,7 @@ namespace pliant {
 
 /// Fills a picture with the visible parts, obstacles and planes at a state, and with springs, rods and
 /// strings as thin lines. Each point of a spring or a joint that is attached to the world is a dot.
-/// Scene::show_springs switches these lines and dots off. The light and the ground are those of the scene.
+/// Scene::show_springs switches these lines and dots off. The scene gives the light and the ground.
 class StatePicture {
  public:
   /// scene, model: must outlive the object.
@@ -36,10 +36,12 @@ class StatePicture {
   /// the box `bodies` than its diagonal. time: s.
   void extend_to_anchors(double time, const Eigen::AlignedBox3d& bodies, Eigen::AlignedBox3d& box) const;
   /// Sets the camera and the ground. bodies: a box around the bodies; all: a box around everything that the
-  /// camera shows; aspect: width / height of the picture. Settings of the scene replace them.
+  /// camera shows; aspect: width / height of the picture. Camera and ground settings of the scene take
+  /// precedence.
   void set_view(const Eigen::AlignedBox3d& bodies, const Eigen::AlignedBox3d& all, double aspect);
-  /// Sets the scale of values, if the scene colours any part. highest: the largest 99th percentile of the
-  /// values of a state (FrameMeshes::high_value()). The scale ends at a round number.
+  /// Sets the scale of values. The scene must have a coloring. highest: the largest 99th percentile of the
+  /// values of a state (FrameMeshes::high_value()). If the coloring has no range, the scale goes from 0 to a
+  /// round number that is not below `highest`.
   void set_scale(double highest);
   const FrameMeshes& meshes() const { return meshes_; }
   /// The meshes of the last state, in the order of the bodies of the picture.

@@ -33,13 +33,13 @@ struct Coloring {
   SurfaceQuantity by = SurfaceQuantity::strain;
   /// Values of the first and the last colour; values outside the range get the nearer of these two colours.
   /// When absent, the range is from 0 to the highest value, rounded up to a round number; [0, 1] if the
-  /// highest value is rounding error. The highest value is the largest, over all recorded states, of the 99th
-  /// percentile of the values at the vertices of all coloured parts in a state.
+  /// highest value is only rounding error. In each recorded state, the 99th percentile of the values at the
+  /// vertices of all coloured parts is computed. The highest value is the largest of these percentiles.
   std::optional<std::array<double, 2>> range;
   std::vector<const Part*> parts;  ///< coloured parts; empty: all parts that deform
 };
 
-/// Returns whether the setting colours a part by its values.
+/// Returns whether the setting colours this part.
 bool colors(const Coloring& coloring, const Part& part);
 
 }  // namespace pliant

@@ -15,7 +15,7 @@ enum class Severity { kError, kWarning };
 
 struct Diagnostic {
   std::string file;     ///< name of the file, or "--set /pointer" for a value from the command line
-  int line = 0;         ///< counted from 1; 0 if there is none (--set)
+  int line = 0;         ///< counted from 1; 0 for a value from --set
   int column = 0;       ///< counted from 1, in characters (not bytes); a tab is one character
   std::string pointer;  ///< JSON pointer (RFC 6901) of the value; empty for the whole file
   std::string message;
@@ -26,9 +26,9 @@ struct Diagnostic {
 /// file cannot control the terminal.
 std::string to_string(const Diagnostic& diagnostic);
 
-/// Returns the text with everything escaped that must not reach a terminal: control characters, such as line
-/// feed and escape, line separators, byte-order marks, characters that change the writing direction, and
-/// bytes that are not UTF-8.
+/// Returns the text with escapes in place of all characters that must not reach a terminal: control
+/// characters, such as line feed and escape, line separators, byte-order marks, characters that change the
+/// writing direction, and bytes that are not UTF-8.
 std::string escaped(std::string_view text);
 
 class Diagnostics {

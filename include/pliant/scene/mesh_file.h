@@ -16,12 +16,12 @@ struct MeshFile {
   std::vector<std::string> notes;  ///< flaws of the file that were removed, with their numbers, for the user
 };
 
-/// Reads all meshes of a file .obj, .ply, .stl, .gltf or .glb in double precision, or .dae, .fbx, .3ds or
-/// .off in single precision, each transformed by the nodes of the file that contain it. Polygons are divided
-/// into triangles, and common flaws are removed with a note (scene/mesh/README.md). Memory is proportional to
-/// the size of the file. Throws FileError if the file cannot be read, and std::invalid_argument, with the
-/// place of the fault, if it is not a mesh of triangles and polygons with finite vertices. ObstacleMesh
-/// checks the topology of the result.
+/// Reads all meshes of a file, each transformed by the nodes of the file that contain this mesh. Files .obj,
+/// .ply, .stl, .gltf and .glb are read in double precision, files .dae, .fbx, .3ds and .off in single
+/// precision. Polygons are divided into triangles, and common flaws are removed with a note
+/// (src/scene/mesh/README.md). Memory is proportional to the size of the file. Throws FileError if the file
+/// cannot be read, and std::invalid_argument, with the place of the fault, if it is not a mesh of triangles
+/// and polygons with finite vertices. ObstacleMesh checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
 /// Reads a mesh from the bytes of a file; `name` is its path, whose ending chooses the format.
 MeshFile read_mesh(const std::filesystem::path& name, std::string bytes);

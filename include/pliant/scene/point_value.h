@@ -12,8 +12,8 @@ struct MaterialPointValue {
   enum class Form {
     kCoordinates,  ///< x = (u, v, w); u and v in rad
     kDirection,    ///< x = direction from the origin of the body frame, not zero, of arbitrary length
-    kNear  ///< x = position in the body frame (m). Inside a solid: the material point there. Outside, at most
-           ///< twice as far out as the surface, and in a shell: the surface point with its u and v.
+    kNear  ///< x = position in the body frame (m). Inside a solid: the material point there. Inside a shell,
+           ///< or outside and at most twice as far out as the surface: the surface point with the same u, v.
   };
   Form form = Form::kCoordinates;
   Vec3<double> x = Vec3<double>::Zero();

@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// File names of the meshes of obstacles: those given in the scene, or those of a recorded run
-/// (recorded_mesh_name).
+/// File names of the meshes of obstacles: the names given in the scene, or the names under which a run stores
+/// the meshes in its folder (recorded_mesh_name).
 enum class MeshFiles { as_named, of_a_run };
 
 /// Reads a scene file ("-" is standard input). overrides: assignments "/json/pointer=value", applied before

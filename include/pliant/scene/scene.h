@@ -63,8 +63,8 @@ struct GroundSetting {
       height;  ///< z of the ground, m; just below the lowest point of the motion when absent
 };
 
-/// The integrator of a scene that gives a step but no integrator: the method of the paper. A scene that gives
-/// neither is integrated by kAutomatic to kStandardTolerance.
+/// The integrator of a scene that gives a step, but no integrator and no tolerance: the method of the paper.
+/// Other scenes without an integrator use kAutomatic, with kStandardTolerance if they give no tolerance.
 inline constexpr const char* kFixedStepIntegrator = "semi_implicit_euler";
 
 struct Scene {

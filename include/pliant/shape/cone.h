@@ -54,7 +54,7 @@ struct Cone {
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
   /// Returns the surface point for direction g of the mesh pattern. A cone with a tip (|t| = 1) has only one
-  /// end face; the side then also receives the vertices of the other end face.
+  /// end face; the vertices of the missing end face are moved to the side.
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);

@@ -44,9 +44,9 @@ PLIANT_INLINE Material<Dual<3>> material_with_tangents(double u, double v, doubl
 
 PLIANT_INLINE Material<Dual<3>> material_with_tangents(const Material<double>& m) {
   Material<Dual<3>> r;
-  // The derivatives are by u and by v. Where |cos u| or |sin u| is below 1e-30 but not 0, the derivative of
-  // its logarithm could overflow. There d/du is multiplied by cos u sin u. The rule for d/dv is analogous,
-  // with v in place of u.
+  // The derivatives are by u and by v. If |cos u| or |sin u| is below 1e-30 but not 0, the derivative of the
+  // logarithm could overflow; d/du is then multiplied by cos u sin u. The rule for d/dv is analogous, with v
+  // in place of u.
   auto turn = [](const Trig<double>& c, const Trig<double>& s, std::size_t slot, Trig<Dual<3>>& rc,
                  Trig<Dual<3>>& rs) {
     constexpr double small = 1e-30;

@@ -1,6 +1,6 @@
 // Material points (u, v, w) of a solid primitive, section 2 of the paper: latitude u, longitude v and radial
-// coordinate w in [0, 1]. A material point stores the cosines and sines of both angles. They are exact at
-// multiples of 90 degrees, so that the surface has no gap at the poles and at the seam.
+// coordinate w in [0, 1]. A material point stores the cosines and sines of both angles. These values are
+// exact at multiples of 90 degrees, so that the surface has no gap at the poles and at the seam.
 #pragma once
 
 #include <pliant/math/scalar/pack.h>
@@ -24,7 +24,7 @@ Material<double> material_at(double u, double v, double w = 1);
 Material<Dual<3>> material_with_tangents(double u, double v, double w);
 
 /// Returns the material point with its derivatives along three directions that span the space of (u, v, w).
-/// The derivatives are valid also where a cosine or sine underflows, so that only its logarithm is accurate.
+/// The derivatives are valid even if a cosine or sine underflows and only its logarithm is accurate.
 Material<Dual<3>> material_with_tangents(const Material<double>& m);
 
 /// Returns the material point with the given cosines and sines of u and v.
@@ -43,10 +43,10 @@ struct MaterialAngles {
 /// Returns the coordinates of a material point.
 MaterialAngles angles(const Material<double>& m);
 
-/// Returns an array of four material points as Packs, with one point in each lane.
+/// Returns the material points four[0] ... four[3] as Packs, with one point in each lane.
 Material<Pack> gather(const Material<double>* four);
-/// Returns an array of four material points as Packs, with one point in each lane. The derivative of the
-/// result is derivative number `slot` of the points.
+/// Returns the material points four[0] ... four[3] as Packs, with one point in each lane. The derivative of
+/// the result is derivative number `slot` of the points.
 Material<Dual<1, Pack>> gather(const Material<Dual<3>>* four, std::size_t slot);
 /// Returns the four points of m with zero derivatives.
 Material<Dual<1, Pack>> constant(const Material<Pack>& m);

@@ -13,11 +13,11 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< 45 degrees, starting where sin = 0 (or cos = 0); e varies as |sin|^eps (or |cos|^eps)
+    power,     ///< 45 degrees from sin = 0 (or cos = 0) on; e varies as |sin|^eps (or |cos|^eps)
   };
   Kind kind;
   double from = 0, to = 0;         ///< smooth and periodic panels: angles at the ends, rad
-  int sign_cos = 1, sign_sin = 1;  ///< power panel: signs of cos and sin on it
+  int sign_cos = 1, sign_sin = 1;  ///< power panel: signs of cos and sin on the panel
   bool along_sin = true;           ///< power panel: whether it starts where sin = 0 (else cos = 0)
   double eps = 1;                  ///< power panel: exponent
 };
@@ -32,8 +32,8 @@ inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sig
 /// An interval of zeta = z / h.
 struct SectionPanel {
   double from, to;
-  /// true: algebraic singularities at the ends, rule both_ends_rule(); false: analytic, rule gauss_rule()
-  /// (both in math/quadrature.h).
+  /// Whether the section has algebraic singularities at the ends of the interval; the rule is then
+  /// both_ends_rule(), otherwise gauss_rule() (both in math/quadrature.h).
   bool singular;
 };
 

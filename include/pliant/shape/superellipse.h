@@ -9,12 +9,13 @@
 
 namespace pliant {
 
-/// Largest exponent below 2 that superellipse_support() uses. At 2 the dual exponent q is infinite.
+/// superellipse_support() replaces larger exponents by this value, because the dual exponent q is infinite at
+/// 2.
 inline constexpr double kMaxConvexExponent = 2 - 1e-9;
 
-/// Returns the section of a solid that is the unit superellipse. With the Beta function B, the area is
-/// eps B(eps/2, eps/2), and both mean squares are (eps/2) B(3 eps/2, eps/2) / area (Jaklic, Leonardis and
-/// Solina 2000).
+/// Returns the area and the mean squares of the unit superellipse. With the Beta function B,
+///   area = eps B(eps/2, eps/2),   mean square of x or y = (eps/2) B(3 eps/2, eps/2) / area
+/// (Jaklic, Leonardis and Solina 2000).
 Section superellipse_section(double eps);
 
 /// Returns the cosine C and the sine S of the material angle at which (C^eps, S^eps) points along (x, y). For
@@ -33,9 +34,10 @@ struct PlaneSupport {
 };
 
 /// Returns the point of the unit superellipse that is farthest in the direction (m, n), m, n >= 0. The
-/// support function of a p-norm is the q-norm with 1/p + 1/q = 1, so q = 2 / (2 - eps), and the point is its
-/// gradient. For eps >= 2 the result is that of the convex hull, the square with the corners (1, 0) and
-/// (0, 1); for m = n it is then the middle of a side. For m = n = 0 the result is the point (1, 0).
+/// support function of the unit ball of a p-norm is the q-norm with 1/p + 1/q = 1, so q = 2 / (2 - eps); the
+/// point is the gradient of this function. For eps >= 2 the function uses the convex hull, the square with
+/// the corners (1, 0) and (0, 1). The point for m = n is then the middle of a side. For m = n = 0 the result
+/// is the point (1, 0).
 template <class T>
 PlaneSupport<T> superellipse_support(const T& m, const T& n, const T& eps) {
   const T most(kMaxConvexExponent), e = math::min(eps, most), slope = e / T(T(2) - e);  // q - 1

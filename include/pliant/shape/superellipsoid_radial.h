@@ -1,7 +1,7 @@
 // Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u),
 // and
 //   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1: the gauge for unit axes.
-// The surface is that of Superellipsoid. With the radial map, a changing exponent strains the material by
+// The surface equals that of Superellipsoid. With the radial map, a changing exponent strains the material by
 // bounded amounts only; with the trigonometric map of Superellipsoid the strains are unbounded (README.md).
 #pragma once
 

@@ -40,8 +40,9 @@ struct Supertoroid {
     const T ring = power_norm(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1]), T(T(2) / a[5]));
     return power_norm(T(math::abs(T(ring - a[3]))), T(math::abs(x[2]) / a[2]), T(T(2) / a[4]));
   }
-  /// Piece 0 is the whole solid. The others are sections of the tube on the diagonals of the quadrants, so
-  /// that a torus that lies on its side has several points at which it touches a plane.
+  /// Piece 0 is the hull of the whole solid. Pieces 1 to 4 are the sections of the tube on the diagonals of
+  /// the four quadrants of (x, y). With these pieces, contact finds several points of a torus that rests flat
+  /// on a plane.
   static constexpr int hull_pieces = 5;
   template <class T>
   static Vec3<T> support(const Vec3<T>& m, const Vec<T, 6>& a, int piece) {

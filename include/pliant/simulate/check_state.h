@@ -11,7 +11,7 @@
 
 namespace pliant::simulation {
 
-/// Throws std::invalid_argument if the sizes of a state are not those of the model.
+/// Throws std::invalid_argument if the sizes of the vectors of a state do not fit the model.
 inline void check_sizes(const State& state, const Model& model) {
   if (state.q.size() != model.n_q() || state.v.size() != model.n_v() ||
       static_cast<int>(state.at_limit.size()) != model.n_limits() ||

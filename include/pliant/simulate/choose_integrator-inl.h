@@ -37,10 +37,10 @@ inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
 /// These steps are at most of third order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Estimated time of a trial, microseconds, after which it ends, and the least value of max_cost(),
-/// evaluations. Small models do not reach this time.
+/// kTrialTime: estimated time after which a trial ends, microseconds; trials of small models end earlier.
+/// kMinCost: smallest value of max_cost(), evaluations.
 inline constexpr double kTrialTime = 2e6, kMinCost = 30;
-/// Steps that every trial may take, whatever they cost.
+/// Number of steps that every trial may take, even if their cost is above max_cost().
 inline constexpr int kLeastSteps = 3;
 /// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
@@ -108,7 +108,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
 }  // namespace integrator_choice
 
 PLIANT_INLINE double evaluation_cost(const Part& part) {
-  // Costs for each part, for each mass point and parameter, and for each strain point.
+  // Microseconds for each part, for each mass point times each parameter, and for each strain point.
   constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2;
   double cost = part_alone + point_and_parameter * part.mass_points().n_points * part.n_s();
   if (part.continuum() != nullptr) cost += strain_point * part.continuum()->points().n_points;

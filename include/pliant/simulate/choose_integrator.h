@@ -14,7 +14,7 @@ namespace pliant {
 
 /// The name that requests this choice; use it in place of the name of a method.
 inline constexpr const char* kAutomatic = "auto";
-/// The tolerance that is used with kAutomatic if none is given.
+/// The tolerance that is used with kAutomatic if no tolerance is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
 /// Returns whether the model has drives, springs that act at time t (s), or a moving part with elasticity,
@@ -26,7 +26,7 @@ struct IntegratorChoice {
   std::string why;  ///< the reason, as text
 };
 
-/// A caller ended the choice: its function `stop` returned true.
+/// The choice ended because the caller's function `stop` returned true.
 class ChoiceStopped : public std::runtime_error {
  public:
   ChoiceStopped() : std::runtime_error("the choice of the integrator was stopped") {}
@@ -36,10 +36,10 @@ class ChoiceStopped : public std::runtime_error {
 /// were measured with bench/step_bench, so that the result is the same on every machine.
 double evaluation_cost(const Part& part);
 
-/// Returns the choice. If all candidates fail, it is the first candidate, dop853; between equal candidates it
-/// is the first one. start: the state at time 0, with engaged joints. stop: called before every step of a
-/// trial; may be empty. Throws ChoiceStopped if it returns true. The number of evaluations of each trial is
-/// limited, so that the trial of a large model takes some seconds.
+/// Returns the choice. If all candidates fail, the choice is the first candidate, dop853. Among equally fast
+/// candidates, the choice is the first. start: the state at time 0, with engaged joints. stop: called before
+/// every step of a trial; may be empty. Throws ChoiceStopped if stop() returns true. The number of
+/// evaluations of each trial is limited, so that the trial of a large model takes some seconds.
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                                    const std::function<bool()>& stop);
 

@@ -1,4 +1,4 @@
-// Function bodies of clusters.h, and those of Simulation that join the counters of clusters.
+// Function bodies of clusters.h, and of the functions of Simulation that join the counters of clusters.
 // Clusters::advance() lists the stages of an interval.
 #pragma once
 
@@ -20,11 +20,12 @@ namespace pliant {
 
 namespace clusters {
 
-/// Largest number of simulations that are kept for clusters with the same first part.
+/// Largest number of simulations that are kept for clusters with equal first parts.
 inline constexpr std::size_t kMaxKept = 4;
 /// A simulation that is not used is kept for this number of intervals, or up to twice as many.
 inline constexpr long kKeptFor = 64;
-/// A time nearer than this to the end of an interval, in intervals, is the end.
+/// A time is regarded as the end of an interval if its distance from the end is below this share of the
+/// interval.
 inline constexpr double kAtEnd = 1e-9;
 
 /// Least travel of a part in an interval, in radii of the ball that contains the part. Bodies with smaller
@@ -58,7 +59,7 @@ PLIANT_INLINE Clusters::Clusters(Simulation& whole)
 
 PLIANT_INLINE Clusters::~Clusters() = default;
 
-/// Finds the parts without coordinates at joints of moving parts, and those that loads connect with them.
+/// Finds the parts without coordinates that joints or loads connect with moving parts.
 PLIANT_INLINE void Clusters::find_anchors() {
   const Model& model = whole_.model_;
   auto add = [&](int one, int other) {
@@ -122,8 +123,8 @@ PLIANT_INLINE void Clusters::predict_travel(double end) {
   }
 }
 
-/// Joins the sets of parts that can meet, and of parts that sleep together. A sleeping part that joins a part
-/// that is awake may wake and reach others, so that this is repeated until no set grows.
+/// Joins the sets of parts that can meet, and of parts that sleep together. A sleeping part in a set with an
+/// awake part may wake and reach other parts. The search is therefore repeated until no set grows.
 PLIANT_INLINE void Clusters::join_parts_that_meet() {
   const State& state = whole_.state_;
   reached_ = anchors_;
@@ -139,7 +140,7 @@ PLIANT_INLINE void Clusters::join_parts_that_meet() {
     grown = false;
     for (const auto& [i, j] : pairs_)
       if (can_meet(i, j)) grown = join(i, j) || grown;
-    if (sleepers.empty()) break;  // all parts that move are awake
+    if (sleepers.empty()) break;  // all moving parts are awake
     mark_awake();
   }
 }
@@ -151,8 +152,8 @@ PLIANT_INLINE void Clusters::mark_awake() {
     if (whole_.model_.parts()[at(i)].q0 >= 0 && !sleeps(whole_.state_, i)) awake_[at(sets_.root(i))] = true;
 }
 
-/// Joins two parts that can meet. If one of them cannot move, records that the other reaches it. Returns
-/// whether two sets have become one.
+/// Joins two parts that can meet. If one of the parts cannot move, records that the other part can reach it.
+/// Returns whether two sets have become one.
 PLIANT_INLINE bool Clusters::join(int i, int j) {
   auto moves = [&](int part) { return whole_.model_.parts()[at(part)].q0 >= 0; };
   if (moves(i) && moves(j)) {
@@ -164,8 +165,8 @@ PLIANT_INLINE bool Clusters::join(int i, int j) {
   return false;
 }
 
-/// Whether two parts whose boxes meet can touch in this interval: their gap at its start is smaller than the
-/// sum of their travels.
+/// Returns whether two parts whose boxes meet can touch in this interval: whether their gap at the start of
+/// the interval is smaller than the sum of their travels.
 PLIANT_INLINE bool Clusters::can_meet(int i, int j) {
   const std::vector<PartModel>& parts = whole_.model_.parts();
   const ContactFinder& finder = whole_.contact_->finder();
@@ -174,7 +175,7 @@ PLIANT_INLINE bool Clusters::can_meet(int i, int j) {
     return moves(part) ? !awake_[at(sets_.root(part))] : parts[at(part)].motion == nullptr;
   };
   if (!(moves(i) || moves(j)) || (is_still(i) && is_still(j))) return false;
-  if (moves(i) && moves(j) && sets_.root(i) == sets_.root(j)) return false;  // they are joined
+  if (moves(i) && moves(j) && sets_.root(i) == sets_.root(j)) return false;  // already in one set
   if (!finder.may_touch(i, j)) return false;
   Contact pair;
   pair.a.part = i;
@@ -183,7 +184,8 @@ PLIANT_INLINE bool Clusters::can_meet(int i, int j) {
   return finder.min_gap(whole_.state_, whole_.time(), pair, travel) < travel;
 }
 
-/// Makes a cluster of each set with a part that is awake. Clusters with the same parts as before are kept.
+/// Makes a cluster of each set with an awake part. A cluster whose parts have not changed keeps its
+/// simulation.
 PLIANT_INLINE void Clusters::divide() {
   const Model& model = whole_.model_;
   const State& state = whole_.state_;
@@ -213,8 +215,8 @@ PLIANT_INLINE void Clusters::divide() {
   }
 }
 
-/// Returns the simulation of a set of parts, whose first part with coordinates is `first`. Makes one, in
-/// place of the one that was not used for the longest time if there are many, if the set is new.
+/// Returns the simulation of a set of parts, whose first part with coordinates is `first`. For a new set,
+/// makes a simulation; if kMaxKept simulations are already kept, it replaces the least recently used one.
 PLIANT_INLINE Clusters::Kept& Clusters::kept(int first, const std::vector<int>& parts) {
   std::vector<Kept>& all = kept_[at(first)];
   for (Kept& one : all)
@@ -240,7 +242,7 @@ PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   Simulation& of = *cluster.simulation;
   extract_state(whole_.model_, whole_.state_, of.model_, of.state_);
   of.interval_ = whole_.interval_;
-  of.forget_counters();  // of an earlier simulation that was not used
+  of.forget_counters();  // of a simulation whose result was not used
   for (const int part : cluster.parts) turned_[at(part)] = 0;
   cluster.done = true;
   bool farther = false;
@@ -254,7 +256,7 @@ PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   return farther;
 }
 
-/// Includes the path of the parts of a cluster in a step of h seconds in their boxes and travels. before: the
+/// Extends the boxes and travels of the parts of a cluster by their paths in a step of h seconds. before: the
 /// state at the start of the step. Returns whether a box or a travel has grown.
 PLIANT_INLINE bool Clusters::include_path(const Simulation& of, const State& before, double h) {
   const Model& model = of.model_;
@@ -322,7 +324,7 @@ PLIANT_INLINE void Simulation::forget_counters() {
   for (RigidWorkspace& w : work_.rigid) w.counters = {};
 }
 
-/// Adds the counters of a cluster, and its velocities without inertia.
+/// Adds the counters of a cluster, and records the velocities without inertia of its parts.
 PLIANT_INLINE void Simulation::absorb(Simulation& cluster) {
   step_counters_ += cluster.step_counters_;
   absorbed_counters_ += cluster.counters();

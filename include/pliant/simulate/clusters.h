@@ -20,7 +20,8 @@ class Simulation;  // simulate/simulation.h
 
 class Clusters {
  public:
-  /// Advances the state of this simulation, which must outlive the object. It has contact and a tolerance.
+  /// whole: the simulation whose state is advanced, with contact and a tolerance. It must outlive the
+  /// clusters.
   explicit Clusters(Simulation& whole);
   ~Clusters();
 
@@ -31,15 +32,15 @@ class Clusters {
   /// failures of a step; the state is then undefined.
   void advance(double end);
 
-  /// Returns the parts of each cluster of the last advance, increasing. Parts that cannot move are included
-  /// if the cluster may reach them.
+  /// Returns the numbers of the parts of each cluster of the last advance(), increasing. Parts that cannot
+  /// move are included if the cluster may reach them.
   std::vector<std::vector<int>> parts() const;
 
  private:
   struct Cluster {
     std::vector<int> parts;  ///< numbers in the whole model, increasing
     Simulation* simulation = nullptr;
-    bool done = false;  ///< whether it has been simulated to the end of the interval
+    bool done = false;  ///< whether the cluster has been simulated to the end of the interval
   };
   /// The simulation of a set of parts, kept for later intervals.
   struct Kept {
@@ -65,15 +66,16 @@ class Clusters {
   std::vector<std::vector<Kept>> kept_;  ///< by the number of the first part with coordinates
   const DisjointSets connected_;         ///< parts that joints, springs and torques connect
   std::vector<std::pair<int, int>>
-      anchors_;  ///< moving parts, each with a part without coordinates at a joint or load
+      anchors_;  ///< pairs of a moving part and a part without coordinates that joints or loads connect
   long intervals_ = 0;
   // Of the present interval:
   DisjointSets sets_;                       ///< connected parts, and parts that can meet
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< an estimate of the box of each part's path, m
-  /// Of each part: an estimate of the largest distance of its points from their places at the start, and the
-  /// share of it by rotation and deformation, m.
+  /// Of each part: an estimate of the largest distance of its points from their places at the start of the
+  /// interval, and the share of this distance by rotation and deformation, m.
   std::vector<double> travel_, turned_;
-  std::vector<std::pair<int, int>> pairs_, reached_;  ///< pairs of boxes that meet; (moving, immobile) parts
+  /// Pairs of parts whose boxes meet; pairs of a moving part and an immobile part that it can reach.
+  std::vector<std::pair<int, int>> pairs_, reached_;
   std::vector<bool> awake_;      ///< of each set, by its first part: whether one of its parts is awake
   std::vector<int> cluster_of_;  ///< number of the cluster of each set, by its first part
   BoxTree tree_;

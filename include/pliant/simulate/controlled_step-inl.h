@@ -1,5 +1,5 @@
-// Function bodies of simulation.h: steps to a tolerance. Their length follows from the error (step_length.h);
-// a step whose error is too large is rejected and repeated shorter.
+// Function bodies of simulation.h: steps to a tolerance. The length of a step follows from the error
+// (step_length.h); a step whose error is too large is rejected and repeated with a shorter length.
 #pragma once
 
 #include <pliant/simulate/simulation-inl.h>
@@ -67,8 +67,8 @@ PLIANT_INLINE void Simulation::step_up_to(double until) {
   end_step();
 }
 
-/// Stages 3 to 5 with a tolerance: one step of the length that the tolerance allows, to the time `end` (s) at
-/// the latest.
+/// Stages 3 to 5 with a tolerance: advances by one step of the length that the tolerance allows. The step
+/// ends at the time `end` (s) at the latest.
 PLIANT_INLINE void Simulation::controlled_step(double end) {
   if (!(state_.h > 0)) {
     StepContext begin = context();
@@ -83,9 +83,9 @@ PLIANT_INLINE void Simulation::controlled_step(double end) {
   watch_progress(start, before);
 }
 
-/// Includes an accepted step in the watch. start: time at the start of the step, s. before: the counters
-/// there. Throws NumericalFailure if the steps of a window are as short as the shortest possible step in the
-/// mean.
+/// Includes an accepted step in the watch of the progress (ProgressWatch). start: time at the start of the
+/// step, s. before: the counters at this time. Throws NumericalFailure if the mean length of the steps of a
+/// window is at most the shortest possible length.
 PLIANT_INLINE void Simulation::watch_progress(double start, const StepCounters& before) {
   StepCounters work;
   work.rejected = step_counters_.rejected - before.rejected;

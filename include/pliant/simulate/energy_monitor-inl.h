@@ -12,10 +12,10 @@
 namespace pliant {
 
 namespace energy_monitor {
-/// Share of its size by which every part is lifted, and share of the largest potential energy, in the
-/// smallest energy that could move.
+/// The smallest values of the energy that could move: kLift, the energy that lifts every part by this share
+/// of its size; kRounding, this share of the largest potential energy.
 inline constexpr double kLift = 0.01, kRounding = 1e-9;
-/// A part that moves by less than this share of its size in the whole time does not move.
+/// A part that moves by less than this share of its size in the whole time is regarded as motionless.
 inline constexpr double kStill = 1e-5;
 }  // namespace energy_monitor
 

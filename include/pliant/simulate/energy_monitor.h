@@ -7,21 +7,22 @@
 namespace pliant {
 
 /// Compares the error of the energy balance with the energy that could move: the kinetic energy at the start,
-/// plus the potential energy at the start above its lowest value, plus the magnitudes of all works. A motion
-/// without error has at most this kinetic energy. An error that grows hardly changes it.
+/// plus the potential energy at the start above its lowest value, plus the magnitudes of all works. The
+/// kinetic energy of a motion without error is at most this energy. An error that grows hardly changes this
+/// energy.
 class EnergyMonitor {
  public:
   explicit EnergyMonitor(const Model& model);
 
-  /// Includes the ledger of a state at time t (s). The first ledger is that of the start.
+  /// Includes the ledger of a state at time t (s). The first call must be for the state at the start.
   void add(const Ledger& ledger, double t);
-  /// Returns the energy that could move, J. It is at least the energy that lifts every part by a hundredth of
-  /// its size, and at least 1e-9 of the largest potential energy: below these the errors of resting contact
-  /// and of rounding are not errors of the motion.
+  /// Returns the energy that could move, J. This energy is at least the energy that lifts every part by a
+  /// hundredth of its size, and at least 1e-9 of the largest potential energy. Resting contact and rounding
+  /// cause errors below these bounds, which are not errors of the motion.
   double movable() const;
   /// Returns the largest error of the balance as a share of the energy that could move. The share is 0 if
-  /// nothing has moved: if the works and the kinetic energy are below those of parts that move by 1e-5 of
-  /// their size in the time so far. It is infinite if an energy is not finite.
+  /// nothing has moved: if the sum of works and kinetic energy is below the kinetic energy of parts that move
+  /// by 1e-5 of their size in the time so far. The share is infinite if an energy is not finite.
   double share() const;
 
   double max_kinetic() const { return kinetic_; }  ///< largest kinetic energy, J
@@ -33,7 +34,7 @@ class EnergyMonitor {
   bool started_ = false;
   double start_kinetic_ = 0, kinetic_ = 0, work_ = 0, error_ = 0, time_ = 0;
   double start_potential_ = 0, lowest_potential_ = 0;  ///< of the sum of the potential energies, J
-  double largest_term_ = 0;                            ///< largest magnitude of one of them, J
+  double largest_term_ = 0;                            ///< largest magnitude of one potential energy, J
 };
 
 }  // namespace pliant

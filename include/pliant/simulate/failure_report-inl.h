@@ -15,8 +15,8 @@ namespace pliant::failure_report {
 
 /// A part has burst if a node is displaced by more than this multiple of the size of the part.
 inline constexpr double kBurst = 2;
-/// The square of the norm of a quaternion may differ from 1 by this. Coordinates and velocities above
-/// kLargest are not finite for the energies, which contain their squares.
+/// The square of the norm of a quaternion may differ from 1 by at most kUnit. Coordinates and velocities
+/// above kLargest are reported as not finite, because the energies contain their squares.
 inline constexpr double kUnit = 1e-6, kLargest = 1e150;
 
 PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {

@@ -20,7 +20,8 @@ std::string fault_of(const Model& model, const State& state, const Workspace<dou
 std::string cause(const Dynamics& dynamics, const State& before);
 
 /// Returns a text that names the part and the kind of its energy, and the kind of work, that differ most
-/// between two states of a model. The potential energy of a part contains that of the springs at the part.
+/// between two states of a model. The potential energy of a part contains the energy of the springs at the
+/// part.
 std::string largest_energy_change(const Dynamics& dynamics, const State& before, const State& after);
 /// Returns "at t = T s, in a step of H s: ".
 std::string place(double t, double h);

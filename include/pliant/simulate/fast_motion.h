@@ -1,10 +1,10 @@
-// The fastest small motions about a state: eigenvalues of the Jacobian of the equations of motion. With x a
-// small change of the coordinates, with one entry for each velocity, and x_dot its rate,
+// The fastest small motions about a state: eigenvalues of the Jacobian of the equations of motion. Let x be a
+// small change of the coordinates, with one entry for each velocity, and x_dot its rate. Then
 //   d/dt (x, x_dot) = (x_dot, da/dq x + da/dv x_dot),
 // where a(t, q, v) are the accelerations with joints, limits, springs, elasticity and damping. An eigenvalue
 // -sigma +- i omega is a damped oscillation. Arnoldi's method (Saad, Numerical Methods for Large Eigenvalue
-// Problems, chapter 6) computes the eigenvalues of large modulus. It needs only products with the Jacobian,
-// which are central differences of the accelerations.
+// Problems, chapter 6) computes the eigenvalues of large modulus. The method needs only products with the
+// Jacobian, which are central differences of the accelerations.
 #pragma once
 
 #include <complex>
@@ -21,18 +21,19 @@ struct FastMotion {
   VecX<std::complex<double>> combination;  ///< the eigenvector, in the basis of FastMotions
 };
 
-/// Where most of the kinetic energy of a motion is.
+/// The part, and the coordinates of this part, with most of the kinetic energy of a motion.
 struct MotionPlace {
-  int part = -1;
-  /// Whether the local coordinates, or the global parameters, of this part have its largest share.
+  int part = -1;  ///< number of the part with the largest kinetic energy
+  /// Whether the local coordinates, or the global parameters, have the largest share of the energy of the
+  /// part.
   bool is_local = false, is_of_parameters = false;
 };
 
 /// Arnoldi's method about a state.
 class FastMotions {
  public:
-  /// moves: for each velocity, whether it takes part in the motion; the others are kept constant. The
-  /// dynamics must outlive this object. state: its step length determines the gains of Baumgarte's terms.
+  /// moves: for each velocity, whether it takes part in the motion; all other velocities are kept constant.
+  /// The dynamics must outlive this object. state: its step length determines the gains of Baumgarte's terms.
   FastMotions(const Dynamics& dynamics, const State& state, std::vector<bool> moves);
 
   /// Adds up to `count` vectors to the Krylov space. Returns false if no more vectors can be added, because
@@ -46,8 +47,9 @@ class FastMotions {
   struct Resistance {
     double K = 0, D = 0;
   };
-  /// Returns the resistance against a motion. A pair of complex eigenvalues determines it. The other of two
-  /// real eigenvalues is unknown; the resistance against the eigenvector is then computed.
+  /// Returns the resistance against a motion. A pair of complex eigenvalues determines the resistance. For a
+  /// real eigenvalue, the second eigenvalue of the motion is unknown; K and D are then computed from
+  /// derivatives of the accelerations along the eigenvector.
   Resistance resistance(const FastMotion& motion);
 
  private:

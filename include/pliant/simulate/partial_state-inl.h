@@ -14,8 +14,8 @@ namespace pliant {
 
 namespace partial_state {
 
-/// Copies the cached contacts among the parts with these numbers (increasing), with the numbers of the model
-/// of these parts.
+/// Copies the cached contacts among the parts `numbers` (increasing) to `part`. The copies contain the
+/// numbers that the parts have in the model of these parts.
 inline void extract_cache(const std::vector<CachedContact>& cache, const std::vector<int>& numbers,
                           std::vector<CachedContact>& part) {
   part.clear();
@@ -61,7 +61,7 @@ PLIANT_INLINE void extract_state(const Model& whole, const State& state, const M
     const double rest = state.at_rest[at(numbers[i])];
     part.at_rest[i] = rest;
     if (!(rest < 0)) continue;
-    // Parts that sleep together get the number of the first of them.
+    // Parts that sleep together get one negative number, which follows from the first of these parts.
     std::size_t first = 0;
     while (state.at_rest[at(numbers[first])] != rest) ++first;
     part.at_rest[i] = -1.0 - static_cast<double>(first);

@@ -28,13 +28,13 @@ class ProgressWatch {
   /// scenes with a tolerance of 1e-6 advance by 4e-2 of the interval or more.
   static constexpr long kWindow = 1000;
   static constexpr double kSlowShare = 1e-6;
-  /// A window also ends after a step with more evaluations than this, rejected attempts included, and is then
-  /// slow. The steps of shipped scenes have up to 1715 evaluations.
+  /// A window also ends after a step with more evaluations than this number, rejected attempts included; the
+  /// window is then slow. The steps of shipped scenes have up to 1715 evaluations.
   static constexpr long kMaxEvaluations = 100000;
 
-  /// Includes an accepted step. start, end: times, s. interval: length of the time that the simulation is to
-  /// advance in all, s. work: the counters of this step. Returns the window if it ends here and is slow. A
-  /// step that does not begin at the end of the previous one begins a new window.
+  /// Includes an accepted step. Returns the window if it ends with this step and is slow. start, end: times
+  /// of the step, s. interval: the whole time that the simulation is to advance, s. work: the counters of
+  /// this step. A step that does not begin at the end of the previous step begins a new window.
   std::optional<SlowProgress> add(double start, double end, double interval, const StepCounters& work);
 
  private:

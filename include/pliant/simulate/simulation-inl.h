@@ -190,9 +190,9 @@ PLIANT_INLINE double Simulation::stable_step_at_start() {
   }
 }
 
-/// Returns the failure of a step of h seconds. Its message has the place of the step and the parts that have
-/// burst before the step. If the step is fixed and longer than the largest stable step at the first state,
-/// the message has this largest step, too. t: time of the failure, s.
+/// Returns the failure of a step of h seconds. Its message has the time and the length of the step, and the
+/// parts that have burst before the step. If the length of the step is fixed and above the largest stable
+/// step at the first state, the message also has the largest stable step. t: time of the failure, s.
 PLIANT_INLINE NumericalFailure Simulation::completed(const std::string& what, double t, double h) {
   std::ostringstream message;
   message << failure_report::place(state_.time(), h) << failure_report::burst_parts(model_, state_) << what;

@@ -34,7 +34,7 @@ class Simulation {
   /// std::invalid_argument for an invalid model, method or tolerance, and for a tolerance with a method that
   /// has no error estimate. Throws UnsatisfiableModel if joints contradict each other, and NumericalFailure
   /// if the initial state cannot be evaluated or projected. stop: called during the trials of kAutomatic; the
-  /// constructor throws ChoiceStopped if it returns true.
+  /// constructor throws ChoiceStopped if stop() returns true.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0, const std::function<bool()>& stop = {});
   ~Simulation();
@@ -43,8 +43,8 @@ class Simulation {
 
   /// Advances by h seconds (> 0 and finite). Without a tolerance the advance is one step, which is divided at
   /// the times at which joints engage or are released, or prescribed paths have kinks. With a tolerance the
-  /// advance consists of as many steps as the tolerance requires. Throws std::invalid_argument for another h,
-  /// and NumericalFailure or UnsatisfiableModel if a step fails; the state is then that before the failed
+  /// advance consists of as many steps as the tolerance requires. Throws std::invalid_argument for an invalid
+  /// h. Throws NumericalFailure or UnsatisfiableModel if a step fails, and restores the state before this
   /// step.
   void step(double h);
   /// Advances by one step of the length that the tolerance allows, or by one interval of the clusters. The
@@ -60,9 +60,9 @@ class Simulation {
   /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
-  /// Continues from another state of the same model. Forgets the impulses of joints after the time of that
-  /// state, and the contacts of the last step. Throws std::invalid_argument if the state does not fit the
-  /// model.
+  /// Continues from another state of this model. Forgets the contacts of the last step, and the impulses of
+  /// joints that are later than the time of the new state. Throws std::invalid_argument if the state does not
+  /// fit the model.
   void set_state(State state);
   double time() const { return state_.time(); }
   /// Computes the inputs of the body (MultiBody::input) from the time t (s) and the state.
@@ -91,9 +91,10 @@ class Simulation {
   /// Returns the clusters (simulate/clusters.h); nullptr if all parts step together.
   const Clusters* clusters() const { return clusters_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// Returns the first steps that hardly advanced (ProgressWatch); none if there were no such steps. The
-  /// interval of the watch is a step of fixed length. With a tolerance it is the time from the first state,
-  /// or from that of the last set_state(), to the end of the last step_up_to().
+  /// Returns the first steps that hardly advanced (ProgressWatch); nothing if there were no such steps.
+  /// Without a tolerance, the interval of the watch is the length of one step. With a tolerance, the interval
+  /// is the time from the first state, or from the state of the last set_state(), to the argument `until` of
+  /// the last step_up_to().
   const std::optional<SlowProgress>& slow_progress() const { return slow_progress_; }
   /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
   /// the order of time. Impulses as small as rounding errors are omitted.
@@ -106,7 +107,8 @@ class Simulation {
 
  private:
   friend class Clusters;
-  /// Makes the simulation of a cluster: some parts of the body of another simulation, which must outlive it.
+  /// Makes the simulation of a cluster: of some parts of the body of the simulation `whole`, which must
+  /// outlive this simulation.
   Simulation(const Simulation& whole, const std::vector<int>& parts);
   template <class Advance>
   void with_rollback(double h, Advance&& step);
@@ -146,7 +148,7 @@ class Simulation {
   std::unique_ptr<Clusters> clusters_;        ///< nullptr if all parts step together
   Controller controller_;
   State state_, last_good_, attempt_start_;
-  State first_;  ///< the state at the start, or that of the last set_state()
+  State first_;  ///< the state at the start, or the state of the last set_state()
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   ProgressWatch watch_;

@@ -24,8 +24,8 @@ namespace stability {
 
 /// Largest rotation of a part in a step, rad.
 inline constexpr double kMaxRotation = 0.5;
-/// Largest change of phase of a mode in a step, rad, if impacts or springs act on it. In longer steps they
-/// may add energy, because they act on a mode as on a free body.
+/// Largest change of phase of a mode in a step, rad, if impacts or springs act on the mode. In longer steps
+/// the impacts and springs may add energy, because they act on a mode as on a free body.
 inline constexpr double kMaxPhase = 1;
 /// The Krylov space of the eigenvalues grows by kVectors vectors until the residual of the eigenvalue that
 /// limits the step is at most kResidual. The errors of eigenvalues are then of second order in the residual.
@@ -34,20 +34,20 @@ inline constexpr double kResidual = 0.02;
 /// If the residual is above kExact, the eigenvalue is increased by the residual and by kMargin, at most by
 /// kMaxMargin, so that the step is safe.
 inline constexpr double kExact = 1e-3, kMargin = 0.01, kMaxMargin = 0.05;
-/// Real eigenvalues that limit the step to at most this multiple of the smallest limit are examined by the
-/// resistance against their motion, at most kMaxExamined of them.
+/// For real eigenvalues that limit the step to at most kNearLimit times the smallest limit, the limit is
+/// computed again from the resistance against the motion. kMaxExamined: largest number of these eigenvalues.
 inline constexpr double kNearLimit = 1.25;
 inline constexpr std::size_t kMaxExamined = 12;
 /// A residual above this share is reported.
 inline constexpr double kReported = 0.3;
-/// If the accelerations deform or turn a part by more than this in one stable step, in sizes of the part or
-/// radians, the start is far from equilibrium.
+/// If the accelerations deform or turn a part by more than this number in one stable step, in sizes of the
+/// part or radians, the start is far from equilibrium.
 inline constexpr double kFar = 0.5;
-/// A part that is farther than this from its initial position, in sizes of the part, has burst away.
+/// Distance of a part from its initial position, in sizes of the part, above which is_far_out() is true.
 inline constexpr double kFarOut = 1e6;
 
-/// Returns the largest step (s) for which a method keeps the solutions of x_ddot + D x_dot + K x = 0 bounded:
-/// infinite without stiffness and damping, 0 if one of them is not finite. K: 1/s^2; D: 1/s.
+/// Returns the largest step (s) for which a method keeps the solutions of x_ddot + D x_dot + K x = 0 bounded.
+/// The result is infinite without stiffness and damping, and 0 if K or D is not finite. K: 1/s^2; D: 1/s.
 inline double stable_step_of(const Integrator& method, double K, double D) {
   if (!(K > 0) && !(D > 0)) return std::numeric_limits<double>::infinity();
   if (!std::isfinite(K + D)) return 0;
@@ -74,11 +74,12 @@ inline double stable_step_of(const Integrator& method, std::complex<double> eige
   return stable_step_of(method, std::norm(eigenvalue), 2 * damping);
 }
 
-/// Returns upper bounds of K (1/s^2) and D (1/s) of the drag and the springs that act at time t (s) at a part
-/// whose elasticity the method integrates implicitly, in mass-normalised coordinates.
+/// Upper bounds of stiffness K (1/s^2) and damping D (1/s), in mass-normalised coordinates.
 struct Bound {
   double K = 0, D = 0;
 };
+/// Returns bounds of the drag and of the springs that act at time t (s) at part i. The part must deform
+/// locally.
 inline Bound bound_springs(const Model& model, double t, std::size_t i) {
   const PartModel& m = model.parts()[i];
   Bound bound;
@@ -124,8 +125,8 @@ inline LimitingMotion limiting_motion(const Integrator& method, FastMotions& mot
   }
   std::sort(all.begin(), all.end(),
             [](const LimitingMotion& a, const LimitingMotion& b) { return a.step < b.step; });
-  // A real eigenvalue alone does not determine the limit: it may belong to a damped oscillation, whose step
-  // map for semi-implicit Euler depends on both eigenvalues, or to a motion that grows by itself.
+  // A real eigenvalue alone does not determine the limit. The eigenvalue may belong to an overdamped motion,
+  // whose step map for semi-implicit Euler depends on both eigenvalues, or to a motion that grows by itself.
   LimitingMotion smallest;
   std::size_t examined = 0;
   for (LimitingMotion& each : all) {
@@ -185,9 +186,9 @@ class StableStepSearch {
     });
   }
 
-  /// Returns which velocities take part in the motion whose eigenvalues limit the step. Local coordinates and
-  /// parameters that the method integrates implicitly do not, and neither do modes that it integrates
-  /// exactly.
+  /// Returns for each velocity whether it takes part in the motion whose eigenvalues limit the step. Excluded
+  /// are local coordinates and parameters that the method integrates implicitly, and modes that the method
+  /// integrates exactly.
   std::vector<bool> moving_velocities() const {
     std::vector<bool> moves(static_cast<std::size_t>(model_.n_v()), true);
     for (std::size_t i = 0; i < model_.parts().size(); ++i) {
@@ -202,8 +203,8 @@ class StableStepSearch {
     return moves;
   }
 
-  /// Returns whether a part has left its initial position so far that differences of the accelerations drown
-  /// in rounding errors. The eigenvalues at the initial state are then used.
+  /// Returns whether a part is so far from its initial position that rounding errors dominate differences of
+  /// the accelerations. The eigenvalues at the initial state are then used.
   bool is_far_out() const {
     const State initial = model_.initial_state();
     return std::any_of(model_.parts().begin(), model_.parts().end(), [&](const PartModel& m) {
@@ -217,7 +218,7 @@ class StableStepSearch {
     if (model_.n_v() == 0 || (model_.islands().empty() && !has_stiffness(model_, state_.time()))) return;
     const auto limits = [&](double K, double D) { return std::isfinite(stable_step_of(method_, K, D)); };
     if (!limits(1, 0) && !limits(0, 1)) return;
-    // Baumgarte's terms have a limit of their own.
+    // The Jacobian excludes Baumgarte's terms: limit_by_stabilization() has their limit.
     State state = is_far_out() ? model_.initial_state() : state_;
     std::replace(state.joints.begin(), state.joints.end(), JointMode::closing, JointMode::closed);
     JointPolicy policy = dynamics_.joint_policy();
@@ -260,7 +261,7 @@ class StableStepSearch {
     }
   }
 
-  /// Reports a part that its accelerations deform or turn far in one step. The eigenvalues then change soon
+  /// Reports a part whose accelerations deform or turn it far in one step. The eigenvalues then change soon
   /// after the start.
   void report_far_start() {
     Workspace<double> work;
@@ -331,8 +332,8 @@ class StableStepSearch {
                             std::string(method_.name()) + " integrates their elasticity implicitly";
   }
 
-  /// Limits the step by a factor of the local stiffness. Free modes are integrated exactly without the
-  /// factor, and the rest of their forces by the method.
+  /// Limits the step by a factor of the local stiffness. The exact integration of free modes does not include
+  /// the factor; the method integrates the remaining force.
   void limit_by_factor(const PartModel& m, const TimeFunction& factor) {
     const std::string name = "part '" + m.part->name() + "'";
     const double now = factor.value(state_.time());

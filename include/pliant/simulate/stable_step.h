@@ -10,7 +10,7 @@ namespace pliant {
 struct StableStep {
   double step;        ///< the result of largest_stable_step(), s
   std::string limit;  ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
-  /// Why the step may be limited more, for example by causes that are not included; empty: for no reason.
+  /// The reason why the step may be limited more, for example by causes that are not included; empty: none.
   std::string uncounted;
 };
 /// Returns the largest stable step at the current state, with its cause.

@@ -1,6 +1,6 @@
 // Length of steps with error control (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I,
 // section II.4; the proportional-integral controller of Gustafsson 1991). take_controlled_step() accepts a
-// step or repeats it shorter.
+// step, or rejects it and repeats it with a shorter length.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace pliant {
 
 /// Limits of the growth from one step to the next.
 struct StepGrowth {
-  bool rarely = false;  ///< the length grows by a factor of kMinRareGrowth or more, or not at all
-  double max_growth = 6;
+  bool rarely = false;    ///< the length grows by a factor of kMinRareGrowth or more, or not at all
+  double max_growth = 6;  ///< largest ratio of a step length to the previous step length
 };
 /// Smallest growth that is worth a new factorisation, for methods whose factors depend on the step length.
 inline constexpr double kMinRareGrowth = 2;
@@ -25,8 +25,8 @@ StepGrowth growth_of(const Integrator& method, const Model& model);
 
 /// Returns the length (s) of the step after a step of length h (s). error: error of this step divided by the
 /// tolerance; if it is not finite, the result is 0.2 h. last_error: error of the previous step; 0 if there
-/// was none. order: order of the error estimate. rejected: whether this step is rejected, or repeats a
-/// rejected step; the length then does not grow. max_growth: largest ratio of the result to h.
+/// was no previous step. order: order of the error estimate. rejected: whether this step is rejected, or
+/// repeats a rejected step; the length then does not grow. max_growth: largest ratio of the result to h.
 double next_step(double h, double error, double last_error, int order, bool rejected, double max_growth);
 
 /// Returns the length of a first step at the state, s. order: order of the error estimate of the method.
@@ -35,13 +35,13 @@ double first_step(StepContext& step, const ErrorScale& scale, int order);
 
 /// Advances a state by one step of length state.h. The step ends at the time `end` (s) at the latest. If the
 /// error of the step is at most 1 (in tolerances), accepts the step and stores the next length in state.h;
-/// otherwise rejects the step and repeats it shorter. attempt() advances the state by state.h and returns the
-/// StepError. Returns true if a step was accepted, and false if the length would be min_length (s) or less;
-/// the state is then at the start of the step.
+/// otherwise rejects the step and repeats it with a shorter length. attempt() advances the state by state.h
+/// and returns the StepError. Returns true if a step was accepted. Returns false, with the state at the start
+/// of the step, if the length would be min_length (s) or less.
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
                           StepCounters& counters, Attempt&& attempt) {
-  constexpr double kNearEnd = 0.99;  // a step longer than this share of the time to `end` ends there
+  constexpr double kNearEnd = 0.99;  // a step longer than this share of the time to `end` ends at `end`
   const State start = state;
   const double now = start.time();
   bool rejected = false;

@@ -25,7 +25,7 @@ template <class S>
 class BlockFactor {
  public:
   /// Sets all blocks to zero. The pattern must exist until the last use of the factor, or until the next
-  /// clear(). RankRule::keep has an effect only if the pattern is the object of the previous call; otherwise
+  /// clear(). RankRule::keep has an effect only if `pattern` is the object of the previous call; otherwise
   /// RankRule::decide applies.
   void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
     const bool changed = pattern_ != &pattern;
@@ -102,7 +102,7 @@ class BlockFactor {
     }
   }
 
-  /// Returns whether a row, in the order of the nodes, depends on others and is excluded.
+  /// Returns whether a row, in the order of the nodes, depends on other rows and is excluded.
   bool excluded(int row) const { return pivots_.excluded(row); }
   /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
@@ -131,7 +131,7 @@ class BlockFactor {
     std::copy_n(y, c.size, factored.begin());
     for (int k = 0; k < c.size; ++k) y[order_[at(c.row + k)]] = factored[at(k)];
   }
-  /// Returns the row of the vectors that is eliminated as the k-th one of its node.
+  /// Returns the index in the vectors of the row that is eliminated as the k-th row of a node.
   int row_at(const BlockPattern::Column& c, int k) const { return c.row + order_[at(c.row + k)]; }
 
   /// Eliminates one column of blocks and updates the blocks to its right.

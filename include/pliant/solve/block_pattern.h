@@ -54,7 +54,7 @@ class BlockPattern {
 
   /// The storage of one block, by columns. (This is not a place in the order.)
   struct Place {
-    int offset;    ///< of the first number
+    int offset;    ///< index of the first number
     bool swapped;  ///< for place(u, v): whether the block has the rows of v and the columns of u
   };
   /// Returns the storage of the block of the nodes u and v. Throws std::out_of_range if it is not in the
@@ -69,11 +69,11 @@ class BlockPattern {
   /// A block below the diagonal in a column.
   struct Block {
     int place;   ///< the place of its row node in the order
-    int offset;  ///< of the first number
+    int offset;  ///< index of the first number
   };
   /// A node at its place in the order.
   struct Column {
-    int size;
+    int size;         ///< number of rows of the node
     int row;          ///< the first row of the node in the vectors, which are in the order of the nodes
     int diagonal;     ///< offset of the diagonal block
     int first, last;  ///< range of the blocks below the diagonal

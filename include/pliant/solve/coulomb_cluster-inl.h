@@ -17,12 +17,12 @@ namespace pliant {
 
 namespace detail {
 
-/// Tolerances of the sweeps. The largest of the two and of both tolerances of CoulombTolerance is used.
-/// kSweepExact is relative to the largest contact velocity without impulses. kSweepUlps is in units of the
-/// rounding error of the contact velocities J x.
+/// Tolerances of the sweeps. The largest of these two tolerances and of the two tolerances of
+/// CoulombTolerance is used. kSweepExact is relative to the largest contact velocity without impulses.
+/// kSweepUlps is in units of the rounding error of the contact velocities J x.
 inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
-/// kSweepExact for clusters with point masses (movers with three velocities, for example nodes of a mesh),
-/// unless CoulombTolerance::share is given. Point masses are many and weakly coupled.
+/// This value replaces kSweepExact for clusters with point masses (movers with three velocities, for example
+/// nodes of a mesh), unless CoulombTolerance::share is given. Point masses are many and weakly coupled.
 inline constexpr double kSweepExactOfPointMasses = 1e-6;
 /// Rounds of the search: maximum number of sweeps, and number of pairs of sweeps for the extrapolation (0: no
 /// extrapolation). Large clusters (more than kManyContacts contacts) skip the rounds without extrapolation.
@@ -30,10 +30,10 @@ inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120,
 inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPointMasses{{{12, 4}, {120, 0}, {120, 8}}};
 /// The extrapolation restarts if the residual exceeds this multiple of the smallest residual so far.
 inline constexpr double kSweepWorse = 4;
-/// Relative regularisation of the extrapolation, in case that sweeps are linearly dependent.
+/// Relative regularisation of the extrapolation, in case the results of sweeps are linearly dependent.
 inline constexpr double kSweepRegularisation = 1e-14;
-/// First value: used in place of kAcceptableResidual for the decision about a second search, in large
-/// clusters and in clusters with point masses. Second value: the compliance of contacts in this second
+/// kAcceptableOfManyContacts replaces kAcceptableResidual in the decision about a second search, for large
+/// clusters and clusters with point masses. kContactCompliance is the compliance of contacts in this second
 /// search, as a fraction of the diagonal of W.
 inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
 /// The result of the search with compliant contacts is used if its residual is less than this multiple of the
@@ -142,9 +142,9 @@ PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   system_.add_change_to(contacts_[i], dp, system_.used_pushes_, system_.x_);
 }
 
-/// Returns exact_ (to_rounding: rounding_), or the rounding error of the present impulses as a velocity if
-/// that is larger, but at most acceptable_. This rounding error is large where a light part supports a heavy
-/// one.
+/// Returns the residual at which the search ends: exact_, or rounding_ if to_rounding is true. If the
+/// rounding error of the present impulses, as a velocity, is larger, this error is returned, but at most
+/// acceptable_. This rounding error is large where a light part supports a heavy one.
 PLIANT_INLINE double CoulombCluster::exact_level(bool to_rounding) const {
   double largest = 0;
   for (int i = 0; i < size_; ++i)
@@ -168,9 +168,9 @@ PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
   return change;
 }
 
-/// Returns the factor by which a violation of the law of contact i counts, if `accepted` is the accepted
-/// violation of contacts. At a limit of a parameter, the share of the speed that the impulse p stops is
-/// accepted instead. At other contacts the factor is 1.
+/// Returns the weight of a violation of the law of contact i. accepted: the accepted violation of contacts.
+/// At a limit of a parameter, `share` times the change of speed by the impulse p is accepted instead, and the
+/// weight is the ratio of both accepted values. At other contacts the weight is 1.
 PLIANT_INLINE double CoulombCluster::weight_of(int i, double p, double share, double accepted) const {
   if (!contact(i).is_limit) return 1;
   return accepted / std::max(rounding_, share * contact(i).W(0, 0) * p);
@@ -181,7 +181,7 @@ PLIANT_INLINE double CoulombCluster::weight_of(int i, double p, double share, do
 PLIANT_INLINE double CoulombCluster::residual(double share, double accepted) const {
   double worst = 0;
   for (int i = 0; i < size_; ++i) {
-    if (is_fixed(i)) {  // no impulse can change it
+    if (is_fixed(i)) {  // no impulse can change this velocity
       worst = std::max(worst, -velocity(i)[0]);
       continue;
     }
@@ -305,7 +305,7 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   VecX<double> previous;  // the impulses of the previous round
   for (const auto* round = first; round != last; ++round) {
     const auto& [max_sweeps, history] = *round;
-    if (many && history == 0) continue;  // too slow, as is Newton's method for many point masses
+    if (many && history == 0) continue;  // too slow for many contacts
     if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_point_masses_ && residual() <= exact_))
       return true;
     if (!(many && has_point_masses_) && newton(false)) return true;
@@ -320,7 +320,7 @@ PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
-/// Adds the residual of this cluster to the result.
+/// Updates the residuals in the result with the residual of this cluster.
 PLIANT_INLINE void CoulombCluster::record(double residual, CoulombResult& result) const {
   result.residual = std::max(result.residual, residual);
   const double share = tolerance_.share.value_or(detail::kReportedShare),

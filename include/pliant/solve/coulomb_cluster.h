@@ -113,7 +113,7 @@ class CoulombCluster {
   bool has_limits_ = false;        // whether the cluster contains limits of parameters
   double scale_ = 0;               // the largest contact velocity without impulses
   double approach_ = 0;            // the approach speed (CoulombTolerance)
-  double rounding_ = 0;    // residuals up to this velocity are rounding, or CoulombTolerance::velocity
+  double rounding_ = 0;    // residuals up to this are rounding errors, or within CoulombTolerance::velocity
   double exact_ = 0;       // residuals up to this velocity are within the tolerance
   double acceptable_ = 0;  // residuals up to this velocity are acceptable
   double compliance_ = 0;  // compliance of all contacts, as a fraction of the diagonal of W

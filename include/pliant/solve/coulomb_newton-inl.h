@@ -24,8 +24,8 @@ namespace pliant {
 namespace detail {
 /// Maximum number of steps; the second value is for warm starts, which converge in fewer steps or not at all.
 inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
-/// Maximum size of the factor in a large cluster, in multiples of the diagonal blocks of the movers. Above it
-/// (many bodies packed closely on all sides), sweeps need less time and memory.
+/// Maximum size of the factor in a large cluster, in multiples of the size of the diagonal blocks of the
+/// movers. Above this size (many bodies packed closely on all sides), sweeps need less time and memory.
 inline constexpr double kMaxContactFill = 10;
 /// Newton's method reduces the residual to this fraction of exact_level(), for which one more step is usually
 /// enough. The second value is for warm starts, so that residuals do not accumulate from time step to time
@@ -46,7 +46,7 @@ inline constexpr double kProximalFactorOfPointMasses = 0.7, kMinProximalOfPointM
 /// the method.
 inline constexpr int kMaxFutileNewton = 4;
 inline constexpr double kFutileFarOff = 1e3, kProximalGrowth = 10;
-/// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
+/// Maximum number of velocities of one mover in the system. For larger movers, sweeps need less time.
 inline constexpr int kMaxMoverVelocities = 1000;
 
 /// Adds Y T S to a block, for a push Y and a side S of N velocities each.
@@ -221,7 +221,8 @@ PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
 }
 
 /// Runs Newton's method. Sets the best impulses found; returns whether they are exact (exact_level()).
-/// Returns false at once if the linear system is too large. near: whether it begins at a warm start.
+/// Returns false at once if the linear system is too large. near: whether the method starts from a warm
+/// start.
 PLIANT_INLINE bool CoulombCluster::newton(bool near) {
   const double beyond = near ? detail::kContactNewtonExactNear : detail::kContactNewtonExact;
   double exact = exact_level(near);

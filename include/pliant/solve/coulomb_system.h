@@ -22,15 +22,15 @@ namespace pliant {
 struct CoulombTolerance {
   double velocity = 0;  ///< a velocity, in units of u
   /// A share of the approach speed of a cluster, which is the largest -u_n of its contacts without impulses.
-  /// At a limit of a parameter, a share of the speed that its own impulse stops. Not given: the search ends
-  /// at rounding.
+  /// At a limit of a parameter, a share of the change of speed by the impulse of the limit. Not given: the
+  /// search ends at rounding.
   std::optional<double> share{};
 };
 
 /// The quality and the cost of a solution.
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
-  /// The residual of the cluster in which it is largest in units of the accepted residual of the cluster.
+  /// The residual and the accepted residual of the cluster for which the ratio of these two is largest.
   /// Without CoulombTolerance::share, a share of 1e-3 is accepted here.
   double worst_residual = 0, worst_accepted = 0;
   int sweeps = 0;  ///< number of sweeps over all contacts of a cluster, summed over the clusters

@@ -34,10 +34,11 @@ class MoverSystem {
   /// The storage of a block of A, by columns.
   struct Block {
     std::size_t first;
-    int stride;  ///< from column to column
+    int stride;  ///< distance of the starts of two columns
   };
   /// Raises the weight of a row: the factor that makes its velocity comparable with those of other rows. The
-  /// elimination pivots on weighted rows. A row whose weight was never raised is no pivot of other columns.
+  /// elimination pivots on weighted rows. A row whose weight was never raised is not used as a pivot of other
+  /// columns.
   void raise_weight(int row, double weight) {
     if (weight > 0) weight_[row] = std::max(weight_[row], power_of_two(weight));
   }
@@ -70,13 +71,13 @@ class MoverSystem {
     int size = 3, row = 0, position = 0;  ///< position: in the order of elimination
     bool uniform = true;                  ///< whether all its remaining neighbours have its size
     std::vector<int> neighbours;  ///< movers coupled to it that are eliminated later, in ascending order
-    /// Start in numbers_ of the diagonal block of this mover k. Then follow, for each neighbour j, the blocks
-    /// A_kj and A_jk.
+    /// Start in numbers_ of the diagonal block of this mover k. The blocks A_kj and A_jk of each neighbour j
+    /// follow this block.
     std::size_t numbers = 0;
     std::size_t targets = 0;  ///< start in targets_ of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-  /// N: the size of the mover, M: that of all its neighbours; or Eigen::Dynamic.
+  /// N: size of the mover. M: size of all its neighbours. Either may be Eigen::Dynamic.
   template <int N, int M>
   void eliminate(const Mover& k);
   /// Returns the inverse of the diagonal block of a mover.

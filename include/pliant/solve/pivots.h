@@ -36,7 +36,7 @@ class Pivots {
   /// RankRule::decide, kRounding for the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
   /// A row is postponed if the ratio of its pivot to its scale is below this, and another row has a larger
-  /// ratio. Otherwise a row would fix a motion with which it hardly moves, and magnify errors.
+  /// ratio. Division by a small pivot would magnify errors.
   static constexpr double kSmall = 0.1;
 
   /// Starts a new matrix with this number of rows. RankRule::keep keeps the excluded rows of the previous
@@ -61,7 +61,7 @@ class Pivots {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
   }
 
-  /// Returns whether a row with this pivot should be postponed if another one has a larger ratio.
+  /// Returns whether a row with this pivot should be postponed if another row has a larger ratio.
   bool small(int row, const S& pivot) const {
     return !(keep_ && excluded(row)) && plain(pivot) < kSmall * entry_[at(row)];
   }

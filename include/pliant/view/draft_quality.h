@@ -1,18 +1,18 @@
-// The quality of the pictures of a motion, chosen by the time that they take.
+// The quality of the pictures of a motion, chosen by the time that the pictures take.
 #pragma once
 
 #include <pliant/render/window_renderer.h>
 
 namespace pliant {
 
-/// Lowers the quality of drafts while their pictures take longer than kLongest in the mean, and raises it
-/// again. The time of a picture is that of its samples and of other work. If fewer samples save little time,
-/// the quality is not lowered.
+/// Lowers the quality of drafts (pictures that change) while they take longer than kLongest in the mean, and
+/// raises the quality again when there is time. Only a part of the time of a picture depends on its samples.
+/// If fewer samples save little time, the fall of the quality is undone.
 class DraftQuality {
  public:
   using Quality = WindowRenderer::Quality;
-  static constexpr double kLongest = 0.035;  ///< s of wall time
-  static constexpr int kPause = 300;         ///< pictures between two trials of a quality that was no success
+  static constexpr double kLongest = 0.035;  ///< mean time of a picture, s of wall time
+  static constexpr int kPause = 300;         ///< pictures before a useless fall of the quality is tried again
 
   Quality quality() const { return quality_; }
 
@@ -40,9 +40,9 @@ class DraftQuality {
 
  private:
   static constexpr double kWeight = 0.2;  // of the last picture in the mean
-  static constexpr double kMargin = 1.2;  // so that the quality does not alternate
+  static constexpr double kMargin = 1.2;  // margin of time for a rise, so that the quality does not alternate
   static constexpr double kWorthwhile =
-      0.85;                         // a fall that leaves more than this share of the time is undone
+      0.85;                         // a fall that leaves more than this share of the time is undone (useless)
   static constexpr int kTrial = 8;  // pictures before a change
 
   /// Ratio of the numbers of samples of the next better draft and of a draft.

@@ -15,10 +15,10 @@
 
 namespace pliant {
 
-/// What the window shows of a running simulation.
+/// The data of a running simulation that the window shows.
 struct Snapshot {
   State state;
-  Ledger ledger;             ///< of a state at most a tenth of a second of wall time older
+  Ledger ledger;             ///< of `state`, or of a state up to 0.1 s of wall time older
   double speed = 0;          ///< simulated time / wall time in the last half second; 0 while paused
   double interval_cost = 0;  ///< wall time to compute an interval, s
   double delay = 0;          ///< wall time by which the simulation is late, s; 0 if paused or unlimited
@@ -51,7 +51,7 @@ class LiveRun {
   /// next snapshot has the message.
   void post(Command command);
   /// Performs a command on the thread of the simulation before its next interval, or before the object is
-  /// destroyed. Later snapshots have the text that it returns, or the message if it throws.
+  /// destroyed. Later snapshots have the text that the command returns, or the message if the command throws.
   void post_report(std::function<std::string(LiveSimulation&)> command);
   void play();
   void pause();
@@ -68,7 +68,8 @@ class LiveRun {
   /// Returns the last snapshot. A snapshot never changes; each later state has a new one.
   std::shared_ptr<const Snapshot> snapshot() const;
   /// Returns the samples of the tracks at time 0 and at the ends of all intervals since the last call, in
-  /// their order. After a reset, the time of the next sample is not later than that of the sample before.
+  /// their order. After a reset, the time of the next sample is not later than the time of the last sample
+  /// before the reset.
   std::vector<TrackSample> take_track_samples();
   /// Performs a command before the next interval and waits for it. Throws what the command throws.
   void wait_for(Command command);

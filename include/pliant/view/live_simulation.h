@@ -30,7 +30,7 @@ struct GrowingPath {
 /// A drag: the spring between a point of a part and a moving point of the world.
 struct Drag {
   Spring* spring;        ///< of the body; spring->a is the point of the part
-  MaterialAngles place;  ///< the coordinates of the material point, from which it can be made again exactly
+  MaterialAngles place;  ///< coordinates from which the material point can be computed again exactly
   GrowingPath path;      ///< of the point of the world
   Vec3<double> target;   ///< position to which the user has moved the point of the world, m
   double reach;          ///< largest movement of the point of the world in an interval, m
@@ -103,7 +103,7 @@ class LiveSimulation {
   explicit LiveSimulation(Scene& scene, double display_rate = 60, int threads = 1);
 
   /// Advances by one interval. Throws what Simulation::step() throws; the simulation is then at the end of
-  /// the last good step, and only reset() and saving make sense.
+  /// the last good step, and only reset() and saving are then useful.
   void advance();
   /// Returns to time 0 and forgets all actions.
   void reset();
@@ -117,8 +117,9 @@ class LiveSimulation {
   const Scene& scene() const { return *scene_; }
 
   /// Begins to drag a point of a moving part by a spring of rest length 0 and a damper (N/m, N s/m) between
-  /// this point and a point of the world, which starts at the position of the point. A patch grows and both
-  /// constants are reduced if the fixed steps of the scene would be unstable with them (stable_stiffness.h).
+  /// this point and a point of the world, which starts at the position of the point. If the fixed steps of
+  /// the scene would be unstable with these constants, the patch of the point grows and the constants are
+  /// reduced (stable_stiffness.h).
   /// Throws std::invalid_argument if the point is not on a moving part, or for a negative or infinite
   /// constant.
   void grab(const Point& point, double stiffness, double damping);
@@ -131,7 +132,7 @@ class LiveSimulation {
   /// Whether the last drag has not ended.
   bool is_dragging() const;
   /// Changes gravity (m/s^2, world) linearly within the next interval. If the gravity of the scene changes in
-  /// time, the value is added to it.
+  /// time, `gravity` is added to the gravity of the scene.
   void set_gravity(const Vec3<double>& gravity);
   /// The gravity of the scene, if it changes in time.
   const std::optional<TimeVector>& changing_gravity() const { return changing_gravity_; }
@@ -178,8 +179,8 @@ class LiveSimulation {
 
   /// All drags since time 0.
   const std::vector<Drag>& drags() const { return drags_; }
-  /// The path of gravity, or of what the user added to changing_gravity(); nullptr if the user has not
-  /// changed it.
+  /// The path of gravity, or of the vector that the user added to changing_gravity(); nullptr if the user has
+  /// not changed gravity.
   const GrowingPath* gravity() const { return gravity_.get(); }
 
  private:

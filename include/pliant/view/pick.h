@@ -1,4 +1,4 @@
-// The part under the mouse, and its material point there.
+// The part under the mouse, and the material point under the mouse.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace pliant {
 
 /// The first point of a mesh on a ray.
 struct Hit {
-  std::size_t mesh = 0;       ///< its number in the list
+  std::size_t mesh = 0;       ///< number of the mesh in the list
   Eigen::Index triangle = 0;  ///< column of TriangleMesh::triangles
   Vec3<double> weights;       ///< of the three corners; their sum is 1
   Vec3<double> position;      ///< m, world

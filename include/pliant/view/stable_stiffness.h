@@ -27,15 +27,16 @@ struct SpringConstants {
 /// Bounds for the fixed steps of one scene.
 class StableStiffness {
  public:
-  /// simulation: at its start. step: fixed step, s; 0 if steps adapt to a tolerance: nothing is then bounded.
+  /// simulation: at its start. step: fixed step, s; 0 if steps adapt to a tolerance, and then nothing is
+  /// bounded.
   StableStiffness(const Simulation& simulation, double step);
 
-  /// Returns constants with which the steps resolve the motion of the frame and the global parameters: at
-  /// most the wanted ones.
+  /// Returns constants with which the steps resolve the motion of the frame and the global parameters. Each
+  /// constant is at most the wanted constant.
   SpringConstants resolved(const SpringConstants& wanted, const InverseMass& inverse_mass) const;
-  /// Returns the largest constants, at most the wanted ones, with which the steps remain stable. The damping
-  /// is at most half of the largest stable one, and the stiffness is then as large as possible. inverse_mass:
-  /// of the masses on which the spring acts, 1/kg.
+  /// Returns the largest constants, at most the wanted constants, with which the steps remain stable. A
+  /// damping that must be reduced becomes half of the largest stable damping; the stiffness is then as large
+  /// as possible. inverse_mass: sum of the inverse effective masses on which the spring acts, 1/kg.
   SpringConstants bounded(const Integrator& method, const SpringConstants& wanted, double inverse_mass) const;
 
  private:

@@ -18,18 +18,19 @@ class NoWindow : public std::runtime_error {
 
 struct ViewOptions {
   int width = 960, height = 540;  ///< of the window, pixels
-  int threads = 0;     ///< of the simulation; 0: by the cost of the scene, at most all processors but one
+  int threads = 0;     ///< of the simulation; 0: by the cost of the scene, at most the processors minus one
   bool plays = false;  ///< whether the motion starts at once
   std::filesystem::path scene_folder = ".";  ///< folder of the scene, to which its mesh files are relative
   std::filesystem::path saved;               ///< the file that the button "save" writes
-  /// File of synthetic input (README.md of this room): it drives the window in place of a user. Empty: none.
+  /// File of synthetic input (README.md of this folder), which drives the window in place of a user. Empty:
+  /// no such file.
   std::filesystem::path script;
   double bench =
       0;  ///< above 0: plays for this wall time (s), prints frames per second and speed, and closes
 };
 
-/// Returns the Debian packages without which this build has no window, separated by " and "; empty if it has
-/// a window.
+/// Returns the Debian packages that this build lacks for a window, separated by " and "; empty if the build
+/// has a window.
 std::string missing_window_packages();
 
 /// Simulates a scene in a window until the user closes it. out: for the results of scripts and benches.

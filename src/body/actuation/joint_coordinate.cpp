@@ -57,7 +57,7 @@ double smallest_size(const Joint& joint) {
   return size;
 }
 
-/// The end of a name and the sign of a limit.
+/// The end of the range that a limit bounds: the suffix of the name of the limit, and LimitRange::sign.
 struct End {
   const char* name;
   double sign;
@@ -85,7 +85,7 @@ std::vector<std::unique_ptr<Joint>> limits_of(const Joint& coordinate, const Lim
 }
 
 /// Returns the range [lower, upper]. Throws std::invalid_argument for invalid numbers. longest: an upper
-/// bound of its length.
+/// bound of the length of the range.
 LimitRange range_of(const Joint& coordinate, double lower, double upper, double longest, double restitution) {
   const std::string what = "limits of joint '" + coordinate.name() + "': ";
   if (!(lower < upper) || !(upper - lower < longest))
@@ -97,7 +97,7 @@ LimitRange range_of(const Joint& coordinate, double lower, double upper, double 
 }
 
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
-/// Longest range of an angle, rad. A step must not turn a joint across the rest of the turn.
+/// Longest range of an angle, rad. In one step, a joint must not turn across the 0.1 rad outside the range.
 constexpr double kLongestTurn = 2 * kPi - 0.1;
 
 }  // namespace

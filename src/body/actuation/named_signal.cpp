@@ -15,7 +15,7 @@ namespace {
 
 using SignalKind = Signal::Kind;
 
-/// Returns the component of a name "x", "y" or "z" after a prefix; -1 if the name is another one.
+/// Returns the component 0, 1 or 2 of a name that is a prefix and "x", "y" or "z"; -1 for other names.
 int component(const std::string& name, const std::string& prefix) {
   if (name.size() != prefix.size() + 1 || name.compare(0, prefix.size(), prefix) != 0) return -1;
   const char last = name.back();

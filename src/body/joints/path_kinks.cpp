@@ -1,5 +1,6 @@
 // Kinks of a model: the times at which the prescribed position of an end of a joint or spring, or the rate of
-// this position, jumps; the times at which springs switch; and the multiples of 1 / MultiBody::stop_rate.
+// this position, jumps; the times at which springs are switched on or off; and the multiples of
+// 1 / MultiBody::stop_rate.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,13 +10,13 @@
 namespace pliant {
 
 namespace {
-/// A joint switches on at the time `on`. A kink before `on` counts as a kink at `on` if it is earlier by less
-/// than kUlps times the machine epsilon times |on|.
+/// A joint begins to act at the time `on`. A kink is regarded as a kink at `on` if it is earlier by less than
+/// kUlps times the machine epsilon times |on|.
 constexpr double kUlps = 8;
 
 /// Returns the first multiple of 1 / rate later than `after` and no later than `until`, s.
 Kink next_multiple(double rate, double after, double until) {
-  constexpr double kMaxMultiple = 1e15;  // the next multiple has an exact number
+  constexpr double kMaxMultiple = 1e15;  // smaller integers k, and k + 1, are exact
   double k = std::floor(after * rate);
   if (!(k < kMaxMultiple)) return {};
   while (k / rate <= after) ++k;

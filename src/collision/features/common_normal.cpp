@@ -14,12 +14,12 @@ namespace {
 /// After kFullSteps steps most steps are halved, because full steps can alternate between both sides of a
 /// line at which the curvature of a surface jumps.
 constexpr int kMaxNormalSteps = 40, kFullSteps = 8;
-/// A step is not halved if it is shorter than the last one by this factor.
+/// A step is not halved if its length is less than this multiple of the length of the last step.
 constexpr double kShrinks = 0.6;
 /// Damping of the search for the least residual: value at the first step, and factor by which it changes.
 constexpr double kFirstDamping = 1e-2, kDampingFactor = 4;
 constexpr int kMaxDampedSteps = 100;
-/// A least residual above this is not zero.
+/// If the least residual is above this, there is no common normal nearby.
 constexpr double kNoCommonNormal = 1e-6;
 /// Longest step of the normal, rad, and of a point, in radii of its patch.
 constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
@@ -27,15 +27,16 @@ constexpr double kLongestNormalTurn = 0.5, kLongestMove = 2;
 constexpr double kFarthest = 4;
 /// The search ends after a step that is shorter than this (rad, and sizes).
 constexpr double kLastNormalStep = 1e-8;
-/// Vectors shorter than this (without unit, and in sizes) have no direction from which a search can start.
+/// The direction of a vector shorter than this (without unit, or in sizes) is not used as the first normal.
 constexpr double kShortest = 1e-6;
-/// Added to the diagonal of the Hessian, in units of 1 / size, so that the Hessian can be inverted where
-/// points with common normals form a curve.
+/// This value, in units of 1 / size, is added to the diagonal of the Hessian, so that the Hessian can be
+/// inverted where points with common normals form a curve.
 constexpr double kStiffness = 1e-9;
-/// The distance is constant along a curve of points if its second derivative is at most this, in units of 1 /
-/// size.
+/// The distance is constant along a curve of points if the second derivative of the distance is at most this,
+/// in units of 1 / size.
 constexpr double kConstantDistance = 1e-6;
-/// The normal at an edge or vertex may be outside the normals of the adjacent faces by this angle, rad.
+/// The normal at an edge or vertex may be outside the cone of the normals of the adjacent faces by this
+/// angle, rad.
 constexpr double kOnCone = 1e-7;
 
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
@@ -46,15 +47,15 @@ Eigen::Matrix2d height_curvature(const FeatureJet& jet, const Vec3<double>& n) {
   return (Eigen::Matrix2d() << w[0], w[1], w[1], w[2]).finished();
 }
 
-/// Returns the lengths of the tangents; 1 for those that do not exist.
+/// Returns the lengths of the tangents; 1 for a tangent that does not exist.
 Eigen::Vector2d tangent_lengths(const FeatureJet& jet) {
   Eigen::Vector2d length(1, 1);
   for (int k = 0; k < jet.dimension; ++k) length[k] = jet.tangents.col(k).norm();
   return length;
 }
 
-/// Whether the distance of a vertex from the points of a face is least at a point with a common normal, to
-/// second order: 1 + g kappa > 0 for the curvatures kappa of the face, positive where it is convex.
+/// Whether the distance of a vertex from a face is least at a common normal, to second order. The condition
+/// is 1 + g kappa > 0 for both curvatures kappa of the face; they are positive where the face is convex.
 bool is_nearest(const FeatureJet& face, const CommonNormal& at) {
   const Vec3<double> to_vertex = at.gap * face.normal;
   const Eigen::Matrix2d H = face.tangents.transpose() * face.tangents - height_curvature(face, to_vertex);
@@ -70,7 +71,7 @@ Matrix32 plane_basis(const Vec3<double>& n) {
 
 }  // namespace
 
-/// Turns those vectors of a jet of a that the search needs into the frame of b.
+/// Returns a jet of a, with the vectors that the search needs in the frame of b.
 FeatureJet NormalSearch::turned(FeatureJet jet) const {
   jet.x = pose_(jet.x);
   jet.tangents = pose_.R * jet.tangents;
@@ -172,8 +173,8 @@ NormalStep NormalSearch::step(const Patch& a, const Patch& b, const Vec3<double>
   return step(middles(a, b, n));
 }
 
-/// Whether a point with a common normal is a contact: the normal is that of both sides, and the distance is
-/// least there, at least to second order.
+/// Whether a common normal is that of a contact: it points out of b and into a, and the distance is least
+/// there to second order.
 bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const CommonNormal& at) const {
   if (!a_.is_inside(at.a) || !b_.is_inside(at.b)) return false;
   if (a.dimension == 2 && a.normal.dot(at.normal) > 0) return false;
@@ -188,7 +189,7 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
   const Matrix32 P = plane_basis(at.normal);
   double least = 0;  // second derivative of the distance by a length, times size_
   if (dimension == 3) {
-    // The edge moves along the face.
+    // All changes with x' ds_a = y' ds_b are along the edge.
     const FeatureJet &edge = a.dimension == 1 ? a : b, &face = a.dimension == 1 ? b : a;
     const Eigen::Vector2d t = (P.transpose() * edge.tangents.col(0)).normalized();
     const Eigen::Vector2d of_face = (P.transpose() * face.tangents).inverse() * t;
@@ -204,12 +205,13 @@ bool NormalSearch::is_least(const FeatureJet& a, const FeatureJet& b, const Comm
     const double middle = 0.5 * K.trace();
     least = size_ * (middle - std::sqrt(std::max(0.0, middle * middle - K.determinant())));
   }
-  // If the distance is constant along a line to the boundaries, the contacts are at the ends of this line.
+  // If the distance is constant along a line up to the boundaries of the features, the contacts are at the
+  // ends of this line.
   const bool closed = a_.is_closed(at.a.feature) || b_.is_closed(at.b.feature);
   return least > (closed ? -kConstantDistance : kConstantDistance);
 }
 
-/// Returns the end of a search that has converged, and sets the result.
+/// Sets the result of a search that has converged, and returns how the search ends.
 NormalSearch::End NormalSearch::end_at(const Place& at, CommonNormal& result) const {
   result = {at.a, at.b, at.of_a.x, at.of_b.x, at.normal, at.normal.dot(at.of_a.x - at.of_b.x)};
   return is_least(at.of_a, at.of_b, result) ? End::found : End::none;

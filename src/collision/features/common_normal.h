@@ -1,12 +1,14 @@
-// Common normals of two features. A point x of a and a point y of b with x - y = g n are stationary points of
+// Common normals of two features (faces, edges and vertices: part_features.h) of parts a and b. A point x of
+// a and a point y of b with x - y = g n, where n is normal to both features, are stationary points of
 //   L(s_a, s_b, n) = n . (x(s_a) - y(s_b)),  |n| = 1,
-// where s_a and s_b are the coordinates of the features. Newton's method finds them. The Hessian of L is
+// where s_a and s_b are the coordinates of the features. Newton's method finds these points. The Hessian of L
+// is
 //   ( n.x''    0       x'^T P )
 //   (   0    -n.y''   -y'^T P )
 //   ( P^T x' -P^T y'   -g     )
-// with a basis P of the plane normal to n. The distance is least at such a point if the block of s_a and s_b
-// is positive definite for all changes with x' ds_a = y' ds_b. For a vertex and a face the condition is
-// 1 + g kappa > 0 instead, with both curvatures kappa of the face.
+// with a basis P of the plane normal to n. The distance of x and y is least if the block of s_a and s_b is
+// positive definite for all changes with x' ds_a = y' ds_b. For a vertex and a face the condition is
+// 1 + g kappa > 0 instead, for both principal curvatures kappa of the face.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +42,8 @@ struct NormalStep {
 
 class NormalSearch {
  public:
-  /// a, b: the features of two parts; pose: that of a in the frame of b. size: of the smaller part, m.
+  /// a, b: the features of two parts. pose: pose of a in the frame of b. These three must outlive this
+  /// object. size: size of the smaller part, m.
   NormalSearch(const PartFeatures& a, const PartFeatures& b, const RelativePose& pose, double size)
       : a_(a), b_(b), pose_(pose), size_(size) {}
 
@@ -48,11 +51,13 @@ class NormalSearch {
   Vec3<double> start(const Patch& a, const Patch& b) const;
   /// Returns the step from the middles of two patches with the normal n.
   NormalStep step(const Patch& a, const Patch& b, const Vec3<double>& n) const;
-  /// How a search ends. found: at a common normal at which the distance is least. none: at another common
-  /// normal, too far from the middles of the patches, or where no common normal is near. failed: the search
-  /// does not converge; result.gap is then the last gap, NaN if there is none.
+  /// How a search ends. found: the search has found a common normal at which the distance is least. none: the
+  /// distance is not least at the common normal, a point is too far from the middle of its patch, or no
+  /// common normal is near. failed: the search does not converge; result.gap is then the last gap, NaN if
+  /// there is none.
   enum class End { found, none, failed };
-  /// Searches from the middles of two patches and the normal result.normal.
+  /// Starts a search at the middles of two patches with the normal result.normal. Sets the result if the
+  /// search converges.
   End search(const Patch& a, const Patch& b, CommonNormal& result) const;
 
  private:
@@ -67,8 +72,8 @@ class NormalSearch {
   struct System {
     Eigen::Matrix<double, 6, 6> hessian;
     Vec<double, 6> residual;
-    Eigen::Matrix<double, 3, 2> plane;  ///< the two vectors normal to the normal
-    Eigen::Vector2d of_a, of_b;         ///< lengths of the tangents; 1 for those that do not exist
+    Eigen::Matrix<double, 3, 2> plane;  ///< the two vectors: a basis of the plane perpendicular to the normal
+    Eigen::Vector2d of_a, of_b;         ///< lengths of the tangents; 1 for a tangent that does not exist
   };
   FeatureJet turned(FeatureJet jet) const;
   Place middles(const Patch& a, const Patch& b, const Vec3<double>& n) const;

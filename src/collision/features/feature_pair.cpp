@@ -9,28 +9,29 @@ namespace pliant {
 
 namespace {
 
-/// The first step of Newton's method decides whether two patches are searched. It must lead to points within
-/// kFirstMove radii of the patches. The normal may differ from the axes of the cones by kFirstTurn times
-/// their half angles plus kTurnSlack (rad). The gap may exceed the limits by kGapSlack radii, and by
-/// kGapRounding sizes.
+/// The first step of Newton's method decides whether two patches are searched. The step may move each point
+/// by at most kFirstMove radii of its patch. The normal may differ from the axes of the cones by kFirstTurn
+/// times their half angles plus kTurnSlack (rad). The gap may exceed the limits by kGapSlack times the sum of
+/// both radii plus kGapRounding sizes of the smaller part.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
 /// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
 constexpr double kLeadsTo = 0.8;
 /// Normals are equal if the cosine of the angle between them exceeds this. Contacts with equal normals are
-/// one if they are nearer to each other than FeatureLimits::one_point.
+/// merged if they are nearer to each other than FeatureLimits::one_point.
 constexpr double kOneContactCosine = 0.98;
 /// Overlaps that are deeper than this, in sizes of the smaller part, are tested by is_overlap().
 constexpr double kShallow = 1e-7;
-/// Number of points of an edge in this test, on each side of the contact; their distance is the overlap.
+/// is_overlap() tests this many points of an edge on each side of the contact. The distance between two of
+/// these points is the depth of the overlap.
 constexpr int kEdgeSamples = 3;
 /// The kept pairs of patches (PatchPairs) stay valid while the parts move by at most this relative to each
 /// other, in sizes of the smaller part.
 constexpr double kMargin = 0.1;
-/// A pair of parts with more contacts than this keeps at most this many of those with equal gaps along a
-/// curve or face.
+/// If a pair of parts has more contacts than this, at most this many contacts with equal gaps along a curve
+/// or face are kept.
 constexpr std::size_t kMaxOnCurve = 8;
 
-/// Adds a contact; of contacts that are one, the deepest is kept.
+/// Adds a contact. If the contact is merged with a known one, the deeper of the two is kept.
 void add_contact(const CommonNormal& at, double one_point, std::vector<CommonNormal>& found) {
   const auto twin = std::find_if(found.begin(), found.end(), [&](const CommonNormal& other) {
     return (at.x - other.x).norm() < one_point && at.normal.dot(other.normal) > kOneContactCosine;
@@ -41,8 +42,9 @@ void add_contact(const CommonNormal& at, double one_point, std::vector<CommonNor
     *twin = at;
 }
 
-/// Keeps the first of the contacts first, ..., last - 1, and those that are farthest from the kept ones, at
-/// most kMaxOnCurve in all. Returns the end of the kept contacts.
+/// Moves the contacts to keep to the front of the range [first, last). The first contact is kept. Then the
+/// contact that is farthest from all kept contacts is kept; this is repeated until kMaxOnCurve contacts are
+/// kept. Returns the end of the kept contacts.
 template <class Iterator>
 Iterator move_outermost(Iterator first, Iterator last) {
   auto kept = first + 1;
@@ -92,7 +94,7 @@ class PairSearch {
     known_.clear();
   }
 
-  /// Searches two patches and adds a contact to `found`. Returns false if the search fails.
+  /// Searches for a contact of two patches and adds it to `found`. Returns false if the search fails.
   bool add(const Patch& a, const Patch& b, std::vector<CommonNormal>& found) {
     CommonNormal at;
     at.normal = search_.start(a, b);
@@ -118,7 +120,8 @@ class PairSearch {
   }
 
  private:
-  /// Whether the middle of a patch is inside the other part. pose: in the frame of the other part.
+  /// Whether the middle of a patch of a part is inside the other part. pose: pose of the part in the frame of
+  /// the other part.
   static bool enters(const PartPatches& part, const RelativePose& pose, const PartPatches& other) {
     return std::any_of(part.tree.patches().begin(), part.tree.patches().end(), [&](const Patch& patch) {
       const Vec3<double> x = pose(patch.jet.x);
@@ -138,7 +141,7 @@ class PairSearch {
   bool can_lead_to_contact(const Patch& a, const Patch& b, const NormalStep& first) const {
     const double slack = kGapSlack * (a.bound.radius + b.bound.radius) + kGapRounding * limits_.size;
     if (!(first.gap <= limits_.max_gap + slack && first.gap >= -limits_.max_depth - slack)) return false;
-    // Two vertices, or a vertex and an edge, do not touch where parts overlap.
+    // A negative gap of two vertices, or of a vertex and an edge, is no overlap of the parts.
     if (a.jet.dimension + b.jet.dimension < 2 && first.gap < 0) return false;
     auto is_turned = [&](const Vec3<double>& normal, const PatchBound& bound) {
       return angle_between(normal, bound.axis) > kFirstTurn * bound.angle + kTurnSlack;
@@ -147,9 +150,8 @@ class PairSearch {
       return false;
     return first.length_a <= kFirstMove * a.bound.radius && first.length_b <= kFirstMove * b.bound.radius;
   }
-  /// Whether the parts overlap at a contact with a negative gap. The surfaces of separate parts can have
-  /// common normals with negative gaps, too, because the normals of an acute edge span a wider angle than the
-  /// solid at the edge.
+  /// Whether the parts overlap at a contact with a negative gap. Separate parts can have common normals with
+  /// negative gaps, too, because the normals at an acute edge span a wider angle than the solid there.
   bool is_overlap(const CommonNormal& at) const {
     auto in_a = [&](const Vec3<double>& p) {
       return a_.features.contains(pose_.R.transpose() * (p - pose_.d));
@@ -159,7 +161,7 @@ class PairSearch {
     if (of_a == 2 && of_b == 2) return in_a(at.y) && in_b(at.x);
     if (of_a < of_b) return in_b(at.x);
     if (of_b < of_a) return in_a(at.y);
-    // Of two edges that cross, one enters the other part near the contact.
+    // If parts overlap at two edges, one of the edges is inside the other part near the contact.
     auto enters = [&](const PartFeatures& features, const FeaturePoint& point, const auto& in_other) {
       const FeatureJet jet = features.evaluate(point);
       const double step = at.gap / jet.tangents.col(0).norm();
@@ -177,7 +179,7 @@ class PairSearch {
   const RelativePose& pose_;
   const FeatureLimits& limits_;
   NormalSearch search_;
-  std::vector<CommonNormal>& known_;  // all that have been found, also beyond the limits
+  std::vector<CommonNormal>& known_;  // all common normals found so far, also beyond the limits
 };
 
 }  // namespace

@@ -17,13 +17,14 @@ namespace {
 constexpr int kPatchResolution = 3;
 /// Largest turn of the normal over a patch of a rim or side, rad.
 constexpr double kPatchTurn = 0.5;
-/// Balls are larger than those through the sampled points by this factor.
+/// Factor by which the ball of a patch is larger than the ball of its sampled points.
 constexpr double kBallMargin = 1.1;
-/// Cones are wider than those of the sampled normals by this angle, rad.
+/// Angle by which the half angle of a cone exceeds the largest angle of a sampled normal to its axis, rad.
 constexpr double kNormalMargin = 0.03;
 /// Least factor by which a deformation may shorten a tangent, and least sine of the angle between tangents.
 constexpr double kLeastStretch = 1e-6;
-/// The normals at the border of a patch of a mesh are at this share of the way to the neighbours.
+/// In a mesh, the normal turns from the middle to the border of a patch by an angle. This angle is estimated
+/// as this share of the angle between the normals of neighbouring patches.
 constexpr double kBorder = 0.6;
 
 /// Appends the outward normals of the adjacent faces at a point of a feature.

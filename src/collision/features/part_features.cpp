@@ -10,17 +10,18 @@ namespace pliant {
 
 namespace {
 
-/// Derivatives of the normal and of F = dT/de are differences over this distance, in sizes of the part.
+/// Derivatives of the normal and of F = dT/de are finite differences over this distance, in sizes of the
+/// part.
 constexpr double kJetDifference = 1e-6;
 /// Points are within the boundary of a feature if their coordinates exceed it by at most this.
 constexpr double kOnBoundary = 1e-9;
 /// Least semi-axis of a rim, in sizes of the part. The tip of a cone is no rim.
 constexpr double kLeastRim = 1e-3;
-/// Largest exponent of a superquadric. The curvature of a more pointed one changes so much between patches
-/// that Newton's method often does not converge.
+/// Largest exponent of a superquadric or torus. With a larger exponent the curvature changes so much between
+/// patches that Newton's method often does not converge.
 constexpr double kMostPointed = 1.4;
-/// Number of patches along a straight edge of a box, along both directions of its faces and of end faces, and
-/// along the generators of a side.
+/// Number of patches along an edge of a box, along both directions of a face or end face, and along the
+/// generators of a side.
 constexpr int kPatchesAlong = 4;
 
 }  // namespace
@@ -54,7 +55,8 @@ PartFeatures::PartFeatures(const Part& part, const ParameterValues<double>& valu
 
 /// Adds the faces, edges and vertices of a box. half: half sizes, m.
 void PartFeatures::add_box(const Vec3<double>& half) {
-  // The coordinates of a feature along each axis are -1, 1 or free; each of the 26 choices is a feature.
+  // Along each axis a feature is at -1 or at 1 (half sizes), or extends from -1 to 1. Of these 27 choices,
+  // the one that extends along all three axes is the box itself and no feature.
   for (int choice = 0; choice < 27; ++choice) {
     const std::array<int, 3> side{choice % 3 - 1, choice / 3 % 3 - 1, choice / 9 - 1};
     Feature feature;
@@ -104,7 +106,7 @@ bool PartFeatures::is_closed(int feature) const {
   return kind == Kind::smooth || kind == Kind::rim;
 }
 
-/// Returns a point of a rim, or its derivative by the angle (rad) of order 1 or 2.
+/// Returns a point of a rim, or its derivative by the angle (rad). derivative: order, 0 (the point), 1 or 2.
 Vec3<double> PartFeatures::on_rim(int end, double angle, int derivative) const {
   const Rim& rim = rims_[static_cast<std::size_t>(end)];
   const double turned = angle + 0.5 * kPi * derivative;

@@ -28,10 +28,10 @@ struct FeatureJet {
       Eigen::Matrix<double, 3, 2>::Zero();          ///< dx/ds; unused columns are zero
   Mat3<double> second = Mat3<double>::Zero();       ///< d2x/ds1^2, d2x/(ds1 ds2) and d2x/ds2^2
   Vec3<double> normal = Vec3<double>::Zero();       ///< outward unit normal of a face
-  std::array<Vec3<double>, 3> inward;               ///< directions along the adjacent faces or edges
+  std::array<Vec3<double>, 3> inward;               ///< edge: into its faces; vertex: along its edges
   int n_inward = 0;                                 ///< number of these directions; 0 for a face
   Eigen::Matrix<double, 3, 2> undeformed_tangents;  ///< de/ds
-  Mat3<double> undeformed_second;                   ///< second derivatives of e, as above
+  Mat3<double> undeformed_second;                   ///< second derivatives of e, in the order of `second`
 };
 
 class PartFeatures {
@@ -39,7 +39,7 @@ class PartFeatures {
   /// Whether the features of a part are known at these values: a box, or a shape with end faces whose rims
   /// are ellipses, or a smooth shape without nearly flat or sharply pointed regions.
   static bool exist(const Part& part, const ParameterValues<double>& values);
-  /// part: its features exist. It must outlive this object.
+  /// part: a part whose features exist (exist()). It must outlive this object.
   PartFeatures(const Part& part, const ParameterValues<double>& values);
 
   int count() const { return static_cast<int>(features_.size()); }
@@ -47,14 +47,15 @@ class PartFeatures {
   /// Whether a feature is a surface or curve without boundary.
   bool is_closed(int feature) const;
   bool is_smooth_solid() const { return features_.front().kind == Kind::smooth; }
-  /// Returns points of a feature that divide it into patches of about equal size, with the step of s between
-  /// them. Not for smooth solids. angle: largest turn of the normal over a patch of an undeformed solid, rad.
+  /// Returns the middles of patches of about equal size into which a feature is divided, and sets the step of
+  /// s between them. The feature must not be a smooth solid. angle: largest turn of the normal over a patch
+  /// of an undeformed rim or side, rad.
   std::vector<FeaturePoint> grid(int feature, double angle, Eigen::Vector2d& step) const;
 
   FeatureJet evaluate(const FeaturePoint& point) const;
   /// Returns the point whose coordinates differ by ds from those of a point. jet: evaluate(point).
   FeaturePoint moved(const FeaturePoint& point, const FeatureJet& jet, const Eigen::Vector2d& ds) const;
-  /// Whether a point (body frame, m) is inside the part: f = w - 1 is less than -depth.
+  /// Whether a point (body frame, m) is inside the part: its inside-outside function is less than -depth.
   bool contains(const Vec3<double>& x, double depth = 0) const {
     return part_.inside_outside(x, values_) < -depth;
   }
@@ -69,12 +70,12 @@ class PartFeatures {
     Kind kind = Kind::smooth;
     int dimension = 2;
     int end = 0;                                 ///< 0 or 1: the end face of a disc or rim
-    Vec3<double> origin = Vec3<double>::Zero();  ///< point with s = 0 of a box or disc, m
+    Vec3<double> origin = Vec3<double>::Zero();  ///< of kinds affine and disc: point with s = 0, m
     Eigen::Matrix<double, 3, 2> axes =
-        Eigen::Matrix<double, 3, 2>::Zero();  ///< derivative of e by s of a box or disc, m
+        Eigen::Matrix<double, 3, 2>::Zero();  ///< of kinds affine and disc: derivative of e by s, m
     std::array<Vec3<double>, 3> outwards{
         Vec3<double>::Zero(), Vec3<double>::Zero(),
-        Vec3<double>::Zero()};  ///< normals of the adjacent faces of a box or disc
+        Vec3<double>::Zero()};  ///< of kinds affine and disc: outward normals of the adjacent faces
     int n_outwards = 0;
   };
   struct Rim {

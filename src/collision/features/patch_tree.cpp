@@ -9,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-/// Whether a direction is at most an angle (rad, given by cosine and sine) outside a cone. along: cosine of
-/// the angle between the direction and the axis of the cone.
+/// Whether a direction is inside a cone, or outside it by at most a given angle. cosine, sine: those of this
+/// angle. along: cosine of the angle between the direction and the axis of the cone.
 bool is_near_cone(double along, const PatchBound& cone, double cosine, double sine) {
   // The sum of both angles exceeds pi if its sine is negative.
   return cone.angle >= kPi || cone.sine * cosine + cone.cosine * sine < 0 ||
@@ -18,7 +18,7 @@ bool is_near_cone(double along, const PatchBound& cone, double cosine, double si
 }
 
 /// Whether two bounds can contain a common normal (PatchTree::find_pairs). The bound of a is in the frame of
-/// b and larger by the margin.
+/// b and already enlarged (placed()).
 bool can_meet(const PatchBound& a, const PatchBound& b, const PairReach& reach) {
   const Vec3<double> d = a.centre - b.centre;
   const double radii = a.radius + b.radius, square = d.squaredNorm(),
@@ -35,13 +35,13 @@ bool can_meet(const PatchBound& a, const PatchBound& b, const PairReach& reach) 
          (distance - radii <= reach.max_depth && is_along(-1));
 }
 
-/// Returns a bound in the frame of b, larger by the margin.
+/// Returns a bound of a in the frame of b, enlarged by reach.margin and reach.turn.
 PatchBound placed(const PatchBound& bound, const RelativePose& pose, const PairReach& reach) {
   PatchBound in_b = bound;
   in_b.centre = pose(bound.centre);
   in_b.axis = pose.R * bound.axis;
   in_b.radius += reach.margin;
-  if (reach.turn > 0) {  // the angle grows by about the turn; its sine is `turn`
+  if (reach.turn > 0) {  // the angle grows by the angle whose sine is reach.turn
     const double cosine = std::sqrt(1 - reach.turn * reach.turn);
     in_b.angle = std::min(kPi, bound.angle + 1.1 * reach.turn);
     in_b.cosine = bound.cosine * cosine - bound.sine * reach.turn;

@@ -1,7 +1,7 @@
 // Patches of the surface of a part, and a tree over them. The bound of a patch is a ball that contains its
-// points and a cone that contains their outward normals. A common normal n of two parts can join a patch of
-// each only if n is in the cone of one, -n is in that of the other, and n is along a line between their
-// balls.
+// points and a cone that contains their outward normals. Two parts can have a common normal n at two patches
+// on two conditions. n is in the cone of one patch and -n in the cone of the other. n has the direction of a
+// line between their balls.
 #pragma once
 
 #include <utility>
@@ -18,7 +18,7 @@ double angle_between(const Vec3<double>& a, const Vec3<double>& b);
 struct PatchBound {
   Vec3<double> centre = Vec3<double>::Zero();  ///< m
   double radius = 0;                           ///< m
-  Vec3<double> axis = Vec3<double>::Zero();    ///< of the cone, unit vector
+  Vec3<double> axis = Vec3<double>::Zero();    ///< axis of the cone, unit vector
   double angle = 0;                            ///< half opening angle of the cone, at most pi, rad
   double cosine = 1, sine = 0;                 ///< of `angle`
   void set_angle(double half_angle);
@@ -59,12 +59,12 @@ class PatchTree {
   const std::vector<Patch>& patches() const { return patches_; }
   /// The radius of a ball about the origin of the body frame that contains all patches, m.
   double radius() const { return nodes_.front().bound.centre.norm() + nodes_.front().bound.radius; }
-  /// Finds the pairs of patches of a and b that can contain two points x and y, where n is the outward normal
-  /// at y and the inward normal at x. pose: that of a in the frame of b. `pairs` is overwritten. The order of
-  /// the pairs does not depend on the pose.
+  /// Finds the pairs of patches that can contain two points x of a and y of b with x - y = g n. Here n is the
+  /// outward normal at y and the inward normal at x. pose: pose of a in the frame of b. `pairs` is
+  /// overwritten. The order of the pairs does not depend on the pose.
   static void find_pairs(const PatchTree& a, const PatchTree& b, const RelativePose& pose,
                          const PairReach& reach, std::vector<PatchPair>& pairs);
-  /// Whether a pair of patches can contain such points.
+  /// Whether a pair of patches can contain two points as in find_pairs().
   static bool can_touch(const PatchTree& a, const PatchTree& b, const RelativePose& pose,
                         const PairReach& reach, const PatchPair& pair);
 
@@ -79,7 +79,7 @@ class PatchTree {
   std::vector<Node> nodes_;
 };
 
-/// Returns the patches of a part. features: those of the part at these values.
+/// Returns the patches of a part. features: the features of the part at these values.
 std::vector<Patch> make_patches(const Part& part, const ParameterValues<double>& values,
                                 const PartFeatures& features);
 

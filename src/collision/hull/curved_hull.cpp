@@ -11,21 +11,23 @@ namespace pliant {
 
 namespace {
 
-/// A side is straight if its middle is at most this far from its chord, in sizes.
+/// A generator or edge is straight if its middle is at most this far from its chord, in sizes. A face of a
+/// box is plane with this tolerance, too.
 constexpr double kStraight = 1e-12;
-/// A side is developable if the normals at both ends of each generator differ by at most this, rad.
+/// The side of a part with two pieces is developable if the normals at both ends of each generator differ by
+/// at most this, rad.
 constexpr double kSameNormal = 1e-6;
 /// Number of generators in this test, and the angle (rad) between the points that give a tangent of the rim.
 constexpr int kGenerators = 8;
 constexpr double kRimAngle = 1e-4;
-/// A generator or edge is level at a point if its slope (m per share) is at most this, in sizes.
+/// A generator or edge is level at a point if its slope m . dx/dshare (ImagePoint) is at most this, in sizes.
 constexpr double kLevelSlope = 1e-9;
 /// Generators and edges are divided so that the chain turns by about this angle (rad) within an interval.
 constexpr double kTurnOfInterval = 1;
 /// Largest turn of the chain (rad) over a part with one piece.
 constexpr double kMaxTurnOfPiece = 3;
 
-/// Returns about the largest angle (rad) between corresponding columns of two matrices.
+/// Returns approximately the largest angle (rad) between corresponding columns of two matrices.
 double turn_between(const Mat3<double>& F, const Mat3<double>& G) {
   return (F.colwise().normalized() - G.colwise().normalized()).colwise().norm().maxCoeff();
 }
@@ -50,7 +52,8 @@ bool CurvedHull::exists(const Part& part, const ParameterValues<double>& values)
   const int pieces = shape.hull_pieces();
   if (pieces != 1 && pieces != 2 && !shape.half_sizes(a)) return false;
   if (!shape.has_support(a) || !shape.is_convex(a) || shape.has_flat_regions(a)) return false;
-  // With an exponent below 1 a superquadric is flat at some points, and radii of curvature are infinite.
+  // With an exponent below 1 a superquadric is flat at some points, where its radii of curvature are
+  // infinite.
   for (int k = 0; k < shape.n_parameters(); ++k)
     if (shape.parameters()[k].quantity == Quantity::exponent && a[k] < 1) return false;
   bool tilts = false;
@@ -67,7 +70,7 @@ CurvedHull::CurvedHull(const Part& part, const ParameterValues<double>& values)
   last_normals_.fill(Vec3<double>::Zero());
 }
 
-/// Returns the support point of a piece of the undeformed shape.
+/// Returns the support point of a piece of the undeformed shape in the direction m.
 Vec3<double> CurvedHull::undeformed(const Vec3<double>& m, int piece) const {
   return shape_.support(m, values_.b.data(), piece);
 }
@@ -203,8 +206,8 @@ void CurvedHull::add_local_points(const Vec3<double>& m, int end_face, const Poi
                                   std::vector<Vec3<double>>& points) const {
   if (shape_.hull_pieces() == 1) return add_hills(m, limits, points);
   if (shape_.hull_pieces() == 2) return add_side(m, end_face, limits, points);
-  // The sections of a box stay plane, so that only its edges along z curve. They join the pieces that differ
-  // in the third bit of their numbers (shape/box.h).
+  // The sections of a box stay plane, so that only its edges along z become curved. These edges join pieces
+  // (corners) whose numbers differ in the third bit (shape/box.h).
   const int n = std::max(3, axis().intervals());
   for (int piece = 0; piece < 4; ++piece) add_edge(m, {piece, piece | 4}, n, limits, points);
 }
@@ -236,7 +239,8 @@ void CurvedHull::add_hills(const Vec3<double>& m, const PointLimits& limits,
       is_hill = is_hill && (heights[other] < heights[k] || (heights[other] == heights[k] && k < other));
       least = std::min(least, heights[other]);
     }
-    // The top of a hill is not higher above a sample than the sample is above its neighbours.
+    // The surface is assumed to rise above this sample by no more than the sample is above its lowest
+    // neighbour.
     if (is_hill && 2 * heights[k] - least >= limits.least_height)
       add_farthest(m, image_.farthest(m, {0, 0}, 0, sample_normal(k, half), false).x, limits, points);
   }
@@ -286,8 +290,8 @@ void CurvedHull::add_edge(const Vec3<double>& m, const PieceFamily& edge, int n,
 }
 
 /// Appends the points of a family, between its first and its last member, that are farther than the points
-/// near them. stations: the farthest points of n + 1 members. A curved interval that is level gets its
-/// middle, so that a bent rod has three contact points or more.
+/// near them. stations: the farthest points of n + 1 members. If a curved interval is level, its middle is
+/// appended, so that a bent rod has three contact points or more.
 void CurvedHull::add_inner(const Vec3<double>& m, const PieceFamily& family, const Stations& stations, int n,
                            const PointLimits& limits, std::vector<Vec3<double>>& points) const {
   const double level = kLevelSlope * part_.size();
@@ -303,7 +307,8 @@ void CurvedHull::add_inner(const Vec3<double>& m, const PieceFamily& family, con
       const Vec3<double> x = image_.farthest(m, family, middle.share, middle.normal, false).x;
       if ((x - 0.5 * (before.x + after.x)).norm() > limits.one_point) add_farthest(m, x, limits, points);
     } else if (before.slope_share > level && after.slope_share < -level) {
-      // The rise above the ends is at most half of the change of the slope times the interval.
+      // The rise above the ends is estimated as half of the change of the slope times the length of the
+      // interval.
       const double rise = 0.5 / n * (before.slope_share - after.slope_share);
       if (std::max(m.dot(before.x), m.dot(after.x)) + rise < limits.least_height) continue;
       if (const std::optional<ImagePoint> point = image_.between(m, family, middle))

@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// Which points a search returns.
+/// Limits of the points that a search returns.
 struct PointLimits {
   double one_point;  ///< of points nearer to each other than this (m) one is kept
   /// Points with a smaller m . x (m) may be left out.
@@ -24,10 +24,10 @@ void add_farthest(const Vec3<double>& m, const Vec3<double>& p, const PointLimit
 
 class CurvedHull {
  public:
-  /// Whether this class finds the points of a part at these values. The shape must be convex, without nearly
-  /// flat regions and exponents below 1, and have one piece, two pieces or those of a box. Only affine links
-  /// may follow a bend, and the chain must not turn by more than about 1 rad per seventh of the length, or 3
-  /// rad in all if there is one piece.
+  /// Whether this class can find the points of a part at these values. The shape must be convex, without
+  /// nearly flat regions and exponents below 1. Its hull must have one piece, two pieces or the pieces of a
+  /// box (shape/shape.h). Only affine links of the chain may follow a bend. The chain must not turn by more
+  /// than about 1 rad per seventh of the length, nor by more than 3 rad in all if there is one piece.
   static bool exists(const Part& part, const ParameterValues<double>& values);
   /// part and values must outlive this object.
   CurvedHull(const Part& part, const ParameterValues<double>& values);
@@ -49,9 +49,10 @@ class CurvedHull {
 
  private:
   static constexpr int kMaxIntervals = 16;
+  /// Farthest points of members of a family (PieceFamily) at equal steps of the share.
   using Stations = std::array<ImagePoint, static_cast<std::size_t>(kMaxIntervals) + 1>;
 
-  /// The chain along the z axis.
+  /// The derivative of the chain at points of the z axis.
   struct Axis {
     static constexpr int kPlaces = 8;
     std::array<Mat3<double>, kPlaces> F;  ///< dT/de at equal distances, from the upper end to the lower one

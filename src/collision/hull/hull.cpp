@@ -11,11 +11,10 @@ namespace pliant {
 
 namespace {
 
-/// Points of a part that are nearer to each other than this, in thicknesses, are one point.
+/// Points of a part that are nearer to each other than this, in thicknesses, are merged.
 constexpr double kOnePoint = 0.05;
-/// A nearly flat face is found by turning the direction by this angle (rad), multiplied by the distance below
-/// which points are one and divided by the size of the part. So the points found are nearly as far as the
-/// farthest point.
+/// The points of a nearly flat face are support points for directions that are turned by kTurn * one_point /
+/// (size of the part), rad. With so small a turn these points are nearly as far as the farthest point.
 constexpr double kTurn = 1e-5;
 /// An end face is represented by its rim if the cosine of the angle between its normal and the direction is
 /// at least this.
@@ -115,9 +114,9 @@ Vec3<double> Hull::extents() const {
   return extents;
 }
 
-/// Appends the points of a piece that are farthest if m turns by a small angle. Faces of superquadrics have
-/// their corners on the diagonals of the coordinate axes. Adds the farthest point, too, unless the face is
-/// level and this point is an arbitrary point of the face, not one of its corners.
+/// Appends the points of a piece that are farthest if m turns by a small angle. The turns are along diagonals
+/// of two coordinate axes, because faces of superquadrics have their corners there. Adds the farthest point,
+/// too, unless the face is level and this point is an arbitrary point of the face, not one of its corners.
 void Hull::add_face(const Vec3<double>& m, int piece, double one_point,
                     std::vector<Vec3<double>>& points) const {
   const std::size_t first = points.size();

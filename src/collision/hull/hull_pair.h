@@ -1,8 +1,9 @@
 // Separation and contact points of two convex parts, from their support functions. With the normal n from b
 // to a (unit vector, world), the separation along n is
 //   s(n) = min over x in a of n . x  -  max over y in b of n . y.
-// Its largest value over all n is the gap. Its gradient is x - y, with the points x and y that attain it. If
-// the parts overlap deeply, s has several local maxima; the best one of several starts is used.
+// The largest value of s over all n is the gap. The gradient of s is x - y, with the points x and y that
+// attain the minimum and the maximum. If the parts overlap deeply, s has several local maxima. The search
+// then starts from several normals and returns the best result.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace pliant {
 
-/// A hull at a place in the world.
+/// A hull and its pose in the world.
 struct PlacedHull {
   const Hull& hull;
   Vec3<double> c;    ///< origin of the body frame, m
@@ -21,7 +22,7 @@ struct PlacedHull {
   Vec3<double> to_world(const Vec3<double>& p) const { return c + R * p; }
 };
 
-/// Where two parts touch, or nearly touch.
+/// The largest separation of two parts, and its normal.
 struct Separation {
   Vec3<double> normal;  ///< n, unit vector from b to a, world
   double gap = 0;       ///< s(n), m; negative: depth of the overlap
@@ -33,13 +34,13 @@ Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap);
 
 /// A point where two parts touch.
 struct PairTouch {
-  Vec3<double> x;  ///< m, world; on a, or with on_b (touch_pair) on b
+  Vec3<double> x;  ///< on the surface of a, or of b (on_b of touch_pair()), m, world
   double gap;      ///< m
 };
 
-/// Appends the contact points of two parts for their separation: one point where curved surfaces touch, the
-/// two ends of a common segment, or the corners of the common polygon of two faces. A gap is at most max_gap
-/// (m). on_b: whether the points are on the surface of b instead of a.
+/// Appends the contact points of two parts: one point where curved surfaces touch, the two ends of a common
+/// segment, or the corners of the common polygon of two faces. separation: the result of separation(). Points
+/// with a gap above max_gap (m) are left out. on_b: whether the points are on the surface of b instead of a.
 void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& separation, double max_gap,
                 bool on_b, std::vector<PairTouch>& found);
 

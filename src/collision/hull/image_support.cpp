@@ -11,20 +11,20 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxNewtonSteps = 40, kMaxStepHalvings = 12;
-/// Derivatives of F along a direction are differences over this distance, in sizes of the part.
+/// Derivatives of F along a direction are finite differences over this distance, in sizes of the part.
 constexpr double kDifference = 1e-6;
 /// Longest step of the normal (rad) and of the share.
 constexpr double kLongestTurn = 0.5;
-/// The search ends after a step of the normal (rad) and of the share that is shorter than this. Since
-/// derivatives are differences, the error is then about kDifference times the step.
+/// The search ends after a step of the normal (rad) and of the share that is shorter than this. Because
+/// derivatives are finite differences, the error is then about kDifference times the step.
 constexpr double kLastTurn = 3e-7;
-/// A step may lose this much height by rounding, in sizes of the part.
+/// A step is accepted if it reduces the height by at most this (rounding), in sizes of the part.
 constexpr double kHeightLoss = 1e-14;
-/// The surface is convex if the eigenvalues of the relative curvature exceed this; for an affine map they
-/// are 1.
+/// The surface is curved outwards at a point with g = nu if the eigenvalues of the negative derivative of E^T
+/// g by the turn of the normal (Local::slope) exceed this. For an affine map they are 1.
 constexpr double kConvexMargin = 0.05;
-/// Least cosine of the angle between g and the normal from which Newton's method starts; below it the normal
-/// is set to g first. At cosine -1 the height is least.
+/// Newton's method starts only if the cosine of the angle between g and the normal exceeds this. Otherwise
+/// the normal is first set to the direction of g. At cosine -1 the height would be least instead of largest.
 constexpr double kLeastCosine = 0.3;
 
 }  // namespace
@@ -37,7 +37,7 @@ struct ImageSupport::Local {
   double height;                      // m . x, m
   Mat3<double> F;                     // dT/de
   Vec3<double> g;                     // F^T m
-  Eigen::Matrix<double, 3, 2> E;      // basis of the tangent plane of the normal
+  Eigen::Matrix<double, 3, 2> E;      // basis of the plane perpendicular to the normal
   Eigen::Matrix<double, 3, 2> moved;  // de/dnu E, m
   Eigen::Vector3d residual;           // E^T g, and g . de/dshare
   Mat3<double> slope;                 // derivative of the residual by the turn of the normal and by the share
@@ -101,8 +101,8 @@ ImageSupport::Local ImageSupport::evaluate(const Vec3<double>& m, const PieceFam
   return at;
 }
 
-/// Ascends the height m . x by Newton's method. A step that does not ascend is halved. Where the height is
-/// not concave, the normal turns towards g instead.
+/// Maximises the height m . x by Newton's method. A step that reduces the height is halved. Where the height
+/// is not concave, the normal turns towards g instead. free_share: whether the share is an unknown, too.
 ImageSupport::Local ImageSupport::ascend(const Vec3<double>& m, const PieceFamily& family, bool free_share,
                                          Local at) const {
   const double rounding = kHeightLoss * part_.size();

@@ -22,9 +22,9 @@ std::vector<std::size_t> convex_hull(const std::vector<Point2>& points);
 /// Returns the part of a segment or convex polygon that is on the left of the directed line from p to q.
 std::vector<Point2> clip(const std::vector<Point2>& corners, const Point2& p, const Point2& q);
 
-/// Returns the common part of two segments. If they are parallel, to within `same` (m) over the shorter one:
-/// the ends of their overlap. Else their crossing point, moved to the nearer end of `one` if it is outside of
-/// `one`.
+/// Returns the common part of two segments. If they are parallel, to within `same` (m) over the length of the
+/// shorter one, returns the ends of their overlap, or nothing. Otherwise returns the point where their lines
+/// cross, moved to the nearer end of `one` if it is outside of `one`.
 std::vector<Point2> common_of_segments(const std::vector<Point2>& one, const std::vector<Point2>& other,
                                        double same);
 
@@ -39,7 +39,7 @@ Point2 nearest_point(const std::vector<Point2>& own, const std::vector<Point2>& 
 /// Returns the point of a segment or polygon that is nearest to p.
 Point2 nearest_in(const std::vector<Point2>& corners, const Point2& p);
 
-/// Drops points that are nearer than `same` (m) to an earlier one.
+/// Removes points that are nearer than `same` (m) to an earlier point that is kept.
 void merge(std::vector<Point2>& points, double same);
 
 }  // namespace pliant

@@ -4,9 +4,9 @@
 // the solution of
 //   maximise    alpha - beta - t.H t / 2
 //   subject to  alpha <= a_i + x_i.t for all i,  beta >= b_j + y_j.t for all j.
-// H contains the radii of curvature of the pieces, weighted by the multipliers of the last step, and s on its
-// diagonal, because the length of n + t is not 1. Edges and faces of polyhedral parts are sets of active
-// pieces; smooth parts have one active piece each.
+// H contains the radii of curvature of the pieces, weighted by the multipliers of the last step. s is added
+// to the diagonal of H, because the length of n + t is not 1. Edges and faces of polyhedral parts are sets of
+// active pieces; smooth parts have one active piece each.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxSteps = 60;
-/// Most pieces of a part in a quadratic program: those that are nearest to the other part.
+/// Largest number of pieces of a part in a quadratic program. The pieces nearest to the other part are used.
 constexpr int kMaxPieces = 4;
 /// Longest step of the normal, rad.
 constexpr double kLongestStep = 0.5;
@@ -32,22 +32,22 @@ constexpr double kLongestStep = 0.5;
 constexpr double kShortestStep = 1e-10, kMinGain = 1e-15;
 /// Values that differ by at most this, in sizes, are equal.
 constexpr double kEqual = 1e-12;
-/// Least curvature radius in H, in sizes; it grows by kStiffening if a step fails.
+/// Least radius of curvature in H, in sizes. It is multiplied by kStiffening if a step fails.
 constexpr double kMinRadius = 1e-9, kStiffening = 16;
 /// An overlap deeper than this share of the thickness of the thinner part has several local maxima; the
 /// search then starts from all axes of both parts.
 constexpr double kDeep = 0.01;
-/// A step that fails is halved this often before H changes.
+/// A step is halved at most this often before H changes.
 constexpr int kMaxHalvings = 6;
 /// A step that gains at least this share of the predicted increase of s is not halved.
 constexpr double kEnough = 0.25;
-/// The search starts this far (rad) from an axis of a part, because nearly flat faces have infinite radii of
-/// curvature there.
+/// Angle (rad) between an axis of a part and the normal from which a search near this axis starts. At the
+/// axes nearly flat faces have infinite radii of curvature.
 constexpr double kOffAxis = 0.05;
-/// A direction is the normal of an end face if the cosine of their angle exceeds this.
+/// A direction is the normal of an end face if the cosine of the angle between them exceeds this.
 constexpr double kFaceCosine = 1 - 1e-14;
-/// Most steps of the test whether two faces overlap, and the angle (rad) by which the search leaves the
-/// normal of a face if they do not.
+/// kMaxFaceSteps: largest number of steps of the test whether two faces overlap. kLeaveFace: angle (rad) by
+/// which the search turns the normal away from that of a face if the faces do not overlap.
 constexpr int kMaxFaceSteps = 20;
 constexpr double kLeaveFace = 0.1;
 
@@ -57,13 +57,14 @@ struct Piece {
   double value;           // n . point, m
   Vec3<double> point;     // relative to the middle of the pair, m
   Mat3<double> slopes;    // derivative of the support point by the direction, body frame, m
-  Eigen::Vector2d slope;  // point in the tangent plane
+  Eigen::Vector2d slope;  // components of the point in the tangent plane
   Eigen::Matrix2d H;      // radii of curvature, positive semidefinite
 };
 
-/// A point of a part that is nearest to the other part at a normal, or an end face of such points.
+/// A point of a part that is nearest to the other part at a normal, or an end face whose points are all
+/// nearest.
 struct Nearest {
-  int end_face;    // its number; -1: only the point x is nearest
+  int end_face;    // number of the end face; -1: only the point x is nearest
   Vec3<double> x;  // relative to the middle of the pair, m
 };
 
@@ -78,7 +79,7 @@ struct Side {
   std::array<double, static_cast<std::size_t>(kMaxHullPieces)>
       weights{};  // multipliers of the last step, by number of the piece
 
-  /// Returns the radii of curvature of the nearest pieces, weighted by the multipliers.
+  /// Returns the weighted mean of the matrices H of the nearest pieces. The weights are the multipliers.
   Eigen::Matrix2d curvature() const {
     Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
     double all = 0;
@@ -101,8 +102,8 @@ struct Side {
   double value(const Vec3<double>& n) const {
     return n.dot(origin + part.R * part.hull.support(part.into_body(side * n)));
   }
-  /// Appends the points nearest to the other part at n; of an end face with the normal n its number only.
-  /// equal: values of n . x that differ by less (m) are equal.
+  /// Appends the points nearest to the other part at n. All points of an end face with the normal n are one
+  /// entry. equal: values of n . x that differ by at most this (m) are equal.
   void find_nearest(const Vec3<double>& n, double equal, std::vector<Nearest>& found) const {
     const double nearest = value(n);
     for (int i = 0; i < part.hull.pieces(); ++i) {
@@ -113,7 +114,8 @@ struct Side {
       found.push_back({is_face ? i : -1, x});
     }
   }
-  /// Returns the point that is farthest in a direction e among those of find_nearest(). e: normal to n.
+  /// Returns the point that is farthest in a direction e among the points of find_nearest(). e: perpendicular
+  /// to n.
   Vec3<double> farthest(const std::vector<Nearest>& nearest, const Vec3<double>& e) const {
     Vec3<double> best = nearest.front().x;
     double most = -std::numeric_limits<double>::infinity();
@@ -171,8 +173,8 @@ class Program {
   Program(const Side& a, const Side& b, const Eigen::Matrix2d& H, double equal)
       : a_(a), b_(b), H_(H), H_inverse_(H.inverse()), equal_(equal) {}
 
-  /// Tries the sets of active pieces: one piece of each part, and at most two more. Sets `step` to that of
-  /// the first set that satisfies the optimality conditions. Returns false if there is none.
+  /// Tries the sets of active pieces: one piece of each part, and at most two more. Sets `step` to the
+  /// solution for the first set that satisfies the optimality conditions. Returns false if no set does.
   bool solve(Step& step) {
     for (int extra = 0; extra <= 2; ++extra)
       for (int i = 0; i < a_.count; ++i)
@@ -182,7 +184,7 @@ class Program {
   }
 
  private:
-  /// A further active piece: its row d and right side r, so that d.t = r.
+  /// A further active piece, with its condition d.t = r.
   struct Active {
     bool of_a = false;
     int piece = 0;
@@ -236,7 +238,7 @@ class Program {
     return false;
   }
 
-  /// Accepts a step if the multipliers are not negative and no other piece is violated.
+  /// Accepts a step if no multiplier is negative and no other piece violates its constraint.
   bool accept(int i, int j, const ActiveSet& active, const Eigen::Vector2d& t, const Eigen::Vector2d& lambda,
               Step& step) const {
     if (!t.allFinite()) return false;
@@ -317,7 +319,8 @@ class SeparationSearch {
     return s_n > best.gap ? Separation{n, s_n} : best;
   }
 
-  /// Ascends from a normal to a local maximum of s, or until s exceeds max_gap (m).
+  /// Returns a local maximum of s near a normal n, or an earlier normal of the search at which s exceeds
+  /// max_gap (m).
   Separation ascend(Vec3<double> n, double max_gap) {
     double s_n = s(n), radius = kMinRadius * size_;
     a_.weights.fill(1);
@@ -332,7 +335,8 @@ class SeparationSearch {
       bool improved = false;
       for (; radius < size_ * 1e6; radius *= kStiffening) {
         Eigen::Matrix2d H = curvature;
-        // The length of n + t adds s; H stays positive definite where the overlap is shallow.
+        // s on the diagonal accounts for the length of n + t. A negative s is added only if H stays positive
+        // definite.
         if (s_n > 0 || H.determinant() > 2 * std::abs(s_n) * H.trace()) H.diagonal().array() += s_n;
         H.diagonal().array() += radius;
         Step step;
@@ -342,7 +346,7 @@ class SeparationSearch {
         const double length = step.t.norm();
         if (length < kShortestStep || step.gain < kMinGain * size_) return better({n, s_n}, n + E * step.t);
         if (length > kLongestStep) step.t *= kLongestStep / length;
-        // Halve the step as long as this helps, unless it gains enough.
+        // Halve the step as long as this increases s, unless the gain is large enough.
         Separation longest{n, s_n};
         for (int halving = 0; halving < kMaxHalvings; ++halving, step.t *= 0.5) {
           const Separation next = better(longest, n + E * step.t);

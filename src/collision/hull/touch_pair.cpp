@@ -15,8 +15,8 @@ namespace pliant {
 
 namespace {
 
-/// Points are part of a face if they are at most this far behind its nearest point, in units of the distance
-/// below which points are one. All points of an end face are part of it, at any distance.
+/// Points belong to a face if they are at most this far behind its nearest point, in units of
+/// one_point_distance(). All points of an end face belong to the face, at any distance.
 constexpr double kFaceDepth = 0.2;
 
 /// A face of one part: the corners of the convex hull of its points in the projection along the normal,
@@ -24,14 +24,16 @@ constexpr double kFaceDepth = 0.2;
 struct Face {
   std::vector<Point2> corners;
   Vec3<double> height = Vec3<double>::Zero();  ///< (h_0, slopes): h = h_0 + slopes . place
-  /// Whether one point of the part is the nearest: there is one corner, or the part has nearly flat regions,
-  /// on which it touches at one point exactly.
+  /// Whether the part has one nearest point: the face has one corner, or the part has nearly flat regions, on
+  /// which exactly one point is nearest.
   bool is_point = false;
 
   double height_at(const Point2& p) const { return height[0] + height.tail<2>().dot(p); }
 };
 
-/// Returns the nearest face of a part. side: -1 for part a, 1 for part b.
+/// Returns the face of a part that is nearest to the other part. n: the normal. E: two unit vectors
+/// perpendicular to n, the axes of the projection. origin: origin of the projection, m, world. side: -1 for
+/// part a, 1 for part b.
 Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<double, 3, 2>& E,
              const Vec3<double>& origin, double side) {
   const double same = one_point_distance(part.thickness);
@@ -83,8 +85,8 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
 }
 
 /// Returns the common part of two faces in the projection along the normal: corners of a polygon, ends of a
-/// segment, a crossing point of two segments, or nothing. Nothing is returned if a face has one corner, and
-/// no crossing point if is_point is true for a face. same: see merge().
+/// segment, or a crossing point of two segments. Returns nothing if a face has one corner. Returns no
+/// crossing point if is_point is true for a face. same: points nearer to each other than this (m) are merged.
 std::vector<Point2> common_part(const Face& of_a, const Face& of_b, double same) {
   if (of_a.corners.size() == 1 || of_b.corners.size() == 1) return {};
   const bool clip_a = of_b.corners.size() > 2;
@@ -107,7 +109,8 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
   const Vec3<double>& n = separation.normal;
   const Vec3<double> origin = 0.5 * (a.c + b.c);
   Eigen::Matrix<double, 3, 2> E;
-  // A fixed direction of the world, so that the points of a rim keep their places from step to step.
+  // E depends on a fixed direction of the world, so that the points of a rim keep their places from step to
+  // step.
   const Vec3<double> fixed = std::abs(n[0]) < 0.9 ? Vec3<double>::UnitX() : Vec3<double>::UnitY();
   E.col(0) = (fixed - n.dot(fixed) * n).normalized();
   E.col(1) = n.cross(E.col(0));
@@ -117,7 +120,7 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
   const std::size_t first = found.size();
   const std::vector<Point2> common = common_part(of_a, of_b, same);
   for (const Point2& p : common) {
-    // No gap is less than s(n), but a face is not exactly flat.
+    // No gap is less than s(n). The plane through a face may give less, because a face is not exactly flat.
     const double h_a = of_a.height_at(p), h_b = of_b.height_at(p), gap = std::max(h_a - h_b, separation.gap);
     if (gap > max_gap) continue;
     deepest = std::min(deepest, gap);
@@ -145,7 +148,7 @@ void touch_pair(const PlacedHull& a, const PlacedHull& b, const Separation& sepa
     x = support(other_part, -side) - side * separation.gap * n;
   } else if (!common.empty()) {
     x = support(own_part, side);
-  } else {  // faces whose polygons miss each other, although the rims that they represent touch
+  } else {  // the polygons do not overlap, although the rims that they represent do
     const Point2 p = nearest_point(own.corners, other.corners, rounding);
     x = origin + E * p + own.height_at(p) * n;
   }

@@ -1,5 +1,5 @@
-// Contact points of a part and a plane, from its support function. Only the convex hull of a part can touch a
-// plane, so the points are exact for every shape, also for a torus.
+// Contact points of a part and a plane, from the support function of the part. Only the convex hull of a part
+// can touch a plane, so the points are exact also for a part that is not convex, such as a torus.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace pliant {
 
 /// A plane in the frame of a part.
 struct PlaneInBody {
-  Vec3<double> normal;  ///< unit vector, out of the half space that the plane bounds
+  Vec3<double> normal;  ///< unit vector, out of the solid half space below the plane
   double offset;        ///< height of the origin of the frame over the plane, m
   Vec3<double> along;   ///< unit vector in the plane; it is fixed to the plane, not to the part
 };

@@ -1,6 +1,6 @@
 // Deep overlap of two meshes, which can happen at the start of a run. The vertices of one mesh are then
-// nearer to the far side of the other. Contacts of single vertices and edges would have wrong normals or make
-// dents. The parts are separated as wholes along the direction n of least depth among a few candidates,
+// nearer to the far side of the other mesh. Contacts of single vertices and edges would have wrong normals or
+// cause dents. The parts are separated as wholes along the direction n of least depth among a few candidates,
 //   depth(n) = max_b n . x - min_a n . x,
 // over their vertices x.
 #include <algorithm>
@@ -18,8 +18,9 @@ namespace pliant {
 
 namespace {
 
-/// An overlap is deep if it exceeds both kDeep times the thickness of the thinner part and kTravels times the
-/// distance by which the last step can have moved the parts relative to each other.
+/// If neither mesh contains the centre of the other, an overlap is deep on two conditions. It exceeds kDeep
+/// times the thickness of the thinner part. It exceeds kTravels times the distance by which the last step can
+/// have moved the parts relative to each other.
 constexpr double kDeep = 0.06, kTravels = 2;
 /// The line of centres is a candidate only if the distance of the centres exceeds this, times the sum of the
 /// radii of the bounding balls.

@@ -32,8 +32,8 @@ constexpr double kMaxEdgeDistance = 2;
 /// its distance is less than kNearerShare times the depth of the point behind the first face. This rule
 /// applies only if the cosine between the normals of both faces is above kMinCosine.
 constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
-/// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the range of normals
-/// of the faces that meet there.
+/// Largest angle, as a sine, by which the normal at a ridge or a corner may be outside the cone of the
+/// normals of the faces that meet there.
 constexpr double kMaxOutsideSine = 1e-3;
 /// Points along a ridge whose heights differ by at most this, in sizes, are equally low. A face supports a
 /// point that is at most this deep behind it, even if another face is nearer.
@@ -43,8 +43,8 @@ constexpr double kSideStep = 1e-7;
 /// A part that is level along a ridge has two contacts near the ends of the level range. They are this far
 /// inside the range, in sizes, so that the part is still level there.
 constexpr double kInset = 1e-5;
-/// Number of intervals between the samples along an edge, and of the bisections for the ends of a level
-/// range.
+/// kSamples: number of intervals between the samples along an edge. kHalvings: number of bisections for the
+/// ends of a level range.
 constexpr int kSamples = 12, kHalvings = 48;
 /// Accuracy of the lowest point on an edge, in sizes.
 constexpr double kAccuracy = 1e-15;
@@ -221,6 +221,8 @@ class Search {
   }
 
   Vec3<double> into_a(const Vec3<double>& x) const { return a_.R.transpose() * (x - a_.c); }
+  /// level() and slope() return f = w - 1 of the part and the gradient of f (1/m, world) at a point x (m,
+  /// world). w is the radial material coordinate.
   double level(const Vec3<double>& x) const {
     if (a_.axes) return into_a(x).cwiseQuotient(*a_.axes).norm() - 1;
     return a_.part.inside_outside(into_a(x), a_.values);
@@ -247,8 +249,8 @@ class Search {
     return contact;
   }
 
-  // Longer than 60 lines, because the stages of the search along the edge share the parametrisation of the
-  // edge and its range inside the box.
+  // This function is longer than 60 lines, because the stages of the search along the edge share the
+  // parametrisation of the edge and its range inside the box.
   void search_edge(const ObstacleMesh::Edge& edge) {
     if (is_above(edge)) return;
     const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]),
@@ -292,8 +294,8 @@ class Search {
     const double lowest =
         sign_change(low, high, kAccuracy * size_, [&](double s) { return slope(x(s)).dot(e); });
     // The slope along the edge changes its sign at the minimum. At a kink, the gradient of the contact is the
-    // weighted mean of both one-sided gradients. The weights are chosen so that its slope along the edge is
-    // zero.
+    // weighted mean of both one-sided gradients. The weights are chosen so that the component of this mean
+    // along the edge is zero.
     const double side_step = kSideStep * size_;
     const Vec3<double> before = slope(x(lowest - side_step)), after = slope(x(lowest + side_step));
     const double down = before.dot(e), up = after.dot(e);

@@ -1,7 +1,8 @@
 // Contacts of a part without local deformation with an obstacle mesh. On a flat face of the mesh the contacts
 // are the lowest points of the part, as over a plane. On a ridge or at a corner the contact is the point of
-// the mesh that is deepest inside the part, if the normal of the part there is between the normals of the
-// faces that meet. Thus edges inside a flat floor have no effect, and a ball rolls over a ridge smoothly.
+// the mesh that is deepest inside the part. At this point the normal of the part must be between the normals
+// of the faces that meet. Thus edges inside a flat floor have no effect, and a ball rolls over a ridge
+// smoothly.
 #pragma once
 
 #include <functional>

@@ -135,7 +135,7 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
   return side;
 }
 
-// Longer than 60 lines, because planes, obstacles and pairs share the placed meshes.
+// This function is longer than 60 lines, because planes, obstacles and pairs share the placed meshes.
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
   // A mesh is placed in the world at its first use, because the bounding balls exclude most pairs.
   const std::map<int, BoundingBall> balls = this->balls(state, t);
@@ -213,8 +213,8 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   });
 }
 
-// Longer than 60 lines, because the bounds of the motion are computed once and used for planes, obstacles and
-// pairs.
+// This function is longer than 60 lines, because the bounds of the motion are computed once and used for
+// planes, obstacles and pairs.
 void MeshFinder::approach(const State& state, const State* after, double t, double h, double reach,
                           ContactFinder::Neighbourhood& near) const {
   struct Swept {
@@ -257,7 +257,7 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     const Swept& a = all.at(on.part);
     if (!(plane.normal.dot(a.c) - plane.highest(t, h) < a.reach)) continue;
     near.soft = true;
-    // A half space has no thickness to pass through, but a plane may oscillate.
+    // No part can pass through a half space. Only the oscillation of a plane limits the step.
     near.limit_travel(h * plane.point.over(t, h).max_deviation, 0,
                       kMaxStepShare * meshes_.at(on.part).thickness(), h, after != nullptr);
   }

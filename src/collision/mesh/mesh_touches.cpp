@@ -36,7 +36,8 @@ constexpr double kNoTurn = 1e-6;
 constexpr double kMargin = 0.1;
 /// Tolerance, as a sine, of the test that a normal at a corner of an obstacle points outward.
 constexpr double kOutwardSine = 1e-3;
-/// The triangles of a ridge are the two sides of a plate if the cosine of their normals is below this.
+/// The triangles of a ridge are the two sides of a plate if the cosine of the angle between their normals is
+/// below this.
 constexpr double kBackToBack = -0.999999;
 
 /// Returns the point of a triangle that is nearest to x, as weights of the corners p0, p1, p2; their sum
@@ -337,10 +338,10 @@ bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weigh
   return !m.edges()[static_cast<std::size_t>(m.edges_of(triangle)[edge])].sharp;
 }
 
-/// Appends the overlaps of vertices of a that are behind triangles whose normals oppose the outward direction
-/// of the vertex. The outward direction is the sum of the area normals of the triangles of a at the vertex.
-/// For a plate these vertices and the centre of a are on opposite sides of the plate, and the line between
-/// them crosses the plate.
+/// Appends the overlaps of vertices of a with b. A vertex overlaps if it is behind a triangle whose normal
+/// opposes the outward direction of the vertex. The outward direction is the sum of the area normals of the
+/// triangles of a at the vertex. If b is a plate, the vertex and the centre of a must also be on opposite
+/// sides of the plate, and the line between them must cross the plate.
 void add_vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
                          std::vector<MeshTouch>& found) {
   std::vector<Candidates::Face> faces;

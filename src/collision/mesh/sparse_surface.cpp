@@ -14,9 +14,9 @@ namespace {
 
 /// A point is on a triangle if it is within this distance, in sizes of the part (Part::size()).
 constexpr double kOnTriangle = 1e-10;
-/// The test values of the dynamic parameters differ from their rest values by the shares of kShares of the
-/// rest values, or of kProbe where a rest value is zero. So that the shares of several parameters are not
-/// equal, parameter k gets share * (1 + kUneven * k), with k modulo kUnevenPeriod.
+/// The test values of the dynamic parameters differ from their rest values by a share (kShares) of the rest
+/// value, or of kProbe where the rest value is zero. The share of parameter k is multiplied by
+/// 1 + kUneven * (k modulo kUnevenPeriod), so that the shares of several parameters are not equal.
 constexpr std::array<double, 2> kShares{0.3, -0.2};
 constexpr double kProbe = 1, kUneven = 0.13;
 constexpr int kUnevenPeriod = 13;
@@ -103,7 +103,7 @@ Surface sparse_surface(const Part& part, int resolution, double cell) {
       wider[axis] = 2 * resolution / cells;
       Surface candidate(part, resolution, wider);
       bool same = true;
-      for (std::size_t k = all.size(); same && k-- > 0;)  // the rest shape is more often flat
+      for (std::size_t k = all.size(); same && k-- > 0;)  // last the rest shape, which fails least often
         same = are_on(points[k], part.s(candidate.material(), all[k]), candidate.triangles(),
                       kOnTriangle * part.size());
       if (!same) continue;

@@ -124,9 +124,9 @@ void separate_touching(Eigen::Matrix3Xd& x, Eigen::Matrix3Xi& triangles) {
       if (other < 0) continue;
       for (const int vertex : {a, b}) corners.unite(corner_at(t, vertex), corner_at(other, vertex));
     }
-  std::vector<int> first_set(at(static_cast<int>(x.cols())), -1);  // the set that keeps the vertex
-  std::map<int, int> copy;                                         // vertex of each further set
-  std::vector<int> source;                                         // of each copy
+  std::vector<int> first_set(at(static_cast<int>(x.cols())), -1);  // set of corners that keeps each vertex
+  std::map<int, int> copy;                                         // copied vertex of each further set
+  std::vector<int> source;                                         // original vertex of each copy
   Eigen::Matrix3Xi separate = triangles;
   for (int t = 0; t < n; ++t)
     for (int k = 0; k < 3; ++k) {

@@ -13,7 +13,7 @@ void put(std::string& bytes, Value value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Sums of normals shorter than this are zero but for rounding.
+/// A sum of normals shorter than this is zero apart from rounding errors.
 constexpr double kNoNormal = 1e-9;
 
 Eigen::Matrix3Xd vertex_normals(const TriangleMesh& mesh) {

@@ -23,7 +23,7 @@ constexpr const char* kOutOfMemory = "out of memory";
 
 struct Encoding {
   std::vector<std::uint8_t> bytes;
-  char reason[200] = "out of memory";  // if libpng cannot allocate its own objects
+  char reason[200] = "out of memory";  // remains if libpng cannot allocate its own objects
 };
 
 void on_error(png_structp png, png_const_charp reason) {
@@ -112,7 +112,7 @@ void check_png(const std::filesystem::path& path) {
       refuse("the checksum of a chunk at byte " + std::to_string(at) + " does not match");
     at += chunk + length;
   }
-  if (kind != "IEND" || at != bytes.size()) refuse("its last chunk is not at its end");
+  if (kind != "IEND" || at != bytes.size()) refuse("it does not end with the chunk IEND");
 }
 
 const char* png_library_version() {

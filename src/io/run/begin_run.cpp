@@ -1,4 +1,4 @@
-// The beginning of a run: a new one, or one that is resumed.
+// The beginning of a new run or of a resumed run.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -65,7 +65,7 @@ void Run::write_inputs(const std::filesystem::path& folder) {
 }
 
 /// Writes the scene and the meshes of its obstacles again if one of their files is missing or has changed.
-/// The scene of this session has the same hash as that of the recorded run.
+/// The scene of this session has the same hash as the scene of the recorded run.
 void Run::mend_inputs() {
   for (const auto& [file, checksum] : record_.checksums) {
     if (file != kSceneFile && !is_recorded_mesh(file)) continue;
@@ -117,7 +117,7 @@ void Run::begin_recording(const StableStep& stable) {
   saved_ = std::chrono::steady_clock::now();
 }
 
-/// Throws RecordingMismatch if build, scene or settings differ from those of the recorded run.
+/// Throws RecordingMismatch if build, scene or settings differ from the recorded run.
 void Run::check_resumable() const {
   for (const auto& [name, value] : build_info()) {
     const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
@@ -136,7 +136,7 @@ void Run::check_resumable() const {
 
 /// Compares the recorded numbers with their checksums. After a power cut, the last states may have lost
 /// numbers that were not yet on the disk; these states are removed, with a note. Throws RecordingMismatch,
-/// naming the files, if numbers of earlier states are not as they were written.
+/// naming the files, if numbers of earlier states are damaged.
 void Run::remove_lost_states() {
   Inspection found = state_checksums(folder_->path(), simulation_->model()).inspect();
   if (scene_->contacts) {
@@ -162,7 +162,7 @@ void Run::remove_lost_states() {
 /// The state from which a resumed run continues.
 struct Run::Continuation {
   std::int64_t keep = 0;       ///< number of recorded states that an uninterrupted run would record
-  std::optional<State> state;  ///< none: the initial state
+  std::optional<State> state;  ///< without a value: the initial state
   RunWork work;                ///< of the run up to this state
 };
 
@@ -207,7 +207,7 @@ Run::Continuation Run::find_continuation(const Recording& recorded) {
   return from;
 }
 
-/// Includes the first `states` recorded states in the run record, as the session that recorded them did.
+/// Includes the first `states` recorded states in the run record, like the session that recorded them.
 /// Notes that run.json already has are not repeated. Throws Interrupted if `stop` of the options returns
 /// true; the run can then be resumed again.
 void Run::observe_recorded(const Recording& recorded, std::int64_t states) {

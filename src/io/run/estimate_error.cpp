@@ -72,9 +72,9 @@ class HalfStepsInContact {
   double longest_;
 };
 
-/// Advances a simulation to a time `until` (s). With fixed steps, it takes equal steps of about `step` (s).
-/// With a tolerance, it takes at least two steps, because a step equal to that of the run would show no
-/// difference.
+/// Advances a simulation to a time `until` (s). With fixed steps, all steps have the same length, about
+/// `step` (s). With a tolerance, there are at least two steps, because a step equal to the step of the run
+/// would show no difference.
 void step_to(Simulation& simulation, double until, double step) {
   const double now = simulation.time();
   if (!(until > now)) return;

@@ -83,9 +83,9 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 }  // namespace
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
-  // A joint agrees with the other joints if its disagreement() is at most this, relative to a sum of two
-  // accelerations: the one that the joint requires, and rate^2 times the joint's length, which closes a gap
-  // of that length.
+  // A joint agrees with the other joints if its disagreement() is at most this fraction of the sum of two
+  // accelerations. The first is the acceleration that the joint requires. The second is rate^2 times the
+  // length of the joint, which closes a gap of this length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();

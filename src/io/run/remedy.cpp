@@ -20,16 +20,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Ratio of a tried step to the previous one, and the smallest tried step as a share of the failed one.
+/// Ratio of a tried step to the previous tried step, and the smallest tried step as a share of the step of
+/// the failed run.
 constexpr double kShorter = 0.25, kShortest = 1e-3;
-/// Tried tolerances as multiples of the failed one.
+/// Tried tolerances as multiples of the tolerance of the failed run.
 constexpr double kTolerances[] = {0.01, 10, 100};
 /// A trial with a large error of the energy balance is repeated at most this number of times with a shorter
 /// step or a smaller tolerance. The expected error is then kSafety times the largest error without a warning.
 constexpr int kMaxRefinements = 3;
 constexpr double kSafety = 0.3;
 
-/// Settings of a trial run, and how the advice names them.
+/// Settings of a trial run, and their name in the advice.
 struct Trial {
   std::string integrator;
   double step, tolerance;
@@ -38,7 +39,8 @@ struct Trial {
 
 enum class Outcome { reaches_end, fails, unfinished };
 
-/// How a trial ended, and the largest error of its energy balance as a share of the energy that could move.
+/// The outcome of a trial, and the largest error of its energy balance as a share of the energy that could
+/// move (EnergyMonitor).
 struct Result {
   Outcome outcome;
   double share = 0;
@@ -58,8 +60,8 @@ class Trials {
 
   bool over() const { return Clock::now() > deadline_ || (stop_ && stop_()); }
 
-  /// Performs a trial. It has the steps of a run, and examines the energies of the states that the run would
-  /// record for its frames.
+  /// Performs a trial with the steps of a run. Examines the energies of the states that the run would record
+  /// for its frames.
   Result result(const Trial& trial) const {
     try {
       Simulation simulation(scene_.body, trial.integrator, threads_, trial.tolerance,
@@ -99,8 +101,8 @@ Trial with_tolerance(const std::string& integrator, double tolerance) {
   return {integrator, 0, std::stod(rounded_text(exact)), "a tolerance of " + rounded_text(exact)};
 }
 
-/// Returns the trials with shorter fixed steps: first 0.9 times the largest stable step, if that is shorter
-/// than the failed step, then fractions of the failed step.
+/// Returns the trials with shorter fixed steps: first 0.9 times the largest stable step, if this step is
+/// shorter than the step of the failed run, then fractions of the step of the failed run.
 std::vector<Trial> shorter_steps(Scene& scene, const FailedRun& failed) {
   std::vector<Trial> trials;
   const double stable = 0.9 * stable_step(Simulation(scene.body, failed.integrator, 1, 0)).step;
@@ -131,8 +133,9 @@ std::vector<Trial> trials_for(Scene& scene, const FailedRun& failed) {
   return trials;
 }
 
-/// Returns a trial whose error of the energy balance is small, from the share of the error in another trial.
-/// The error is proportional to the tolerance, or to h^p for a method of order p with steps of h seconds.
+/// Returns a trial whose expected error of the energy balance is small. share: the error of `trial`, as a
+/// share of the energy that could move. The error is assumed to be proportional to the tolerance, or to h^p
+/// for a method of order p with steps of h seconds.
 Trial refined(const Trial& trial, double share) {
   const double ratio = kSafety * kReportedEnergyShare / share;
   if (trial.tolerance > 0) return with_tolerance(trial.integrator, ratio * trial.tolerance);
@@ -140,7 +143,8 @@ Trial refined(const Trial& trial, double share) {
                    trial.step * std::pow(ratio, 1.0 / make_integrator(trial.integrator)->order()));
 }
 
-/// The name of a setting that reaches the end, and the error of its energy balance if that is large.
+/// Returns the name of a setting that reaches the end, and the error of its energy balance if this error is
+/// large.
 std::string advice(const Trial& trial, double share) {
   std::string text = trial.name + " reaches the end of the scene";
   if (share > kReportedEnergyShare)

@@ -157,7 +157,7 @@ void Run::record_state() {
   observe_state(ledger);
 }
 
-/// Notes that the present state is the last recorded one.
+/// Stores the present state as the last recorded state.
 void Run::note_recorded() {
   last_recorded_ = simulation_->state();
   recorded_time_ = simulation_->time();
@@ -236,7 +236,7 @@ void Run::update_record() {
   set_final_values();
 }
 
-/// Sets the work of all sessions in the run record. A resumed session has none before its first step.
+/// Sets the work of all sessions in the run record. A resumed session has done no work before its first step.
 void Run::count_work() {
   const RunWork session{simulation_->step_counters(), simulation_->counters()};
   if (!work_at_start_)
@@ -376,9 +376,9 @@ void Run::fail(const std::string& message) noexcept {
     record_.message = message;
     count_work();
     set_final_values();
-    write_record();  // not save(), which flushes the recording: flushing may be what failed
+    write_record();  // not save(), which flushes the recording: the flush may have failed
   } catch (const std::exception&) {
-    // The first failure is the one that is reported.
+    // Only the first failure is reported.
   }
 }
 

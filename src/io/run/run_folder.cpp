@@ -55,14 +55,14 @@ bool is_in(const fs::path& file, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-/// Returns whether a name is that of an unfinished file or folder of a run.
+/// Returns whether a name is the temporary name of an unfinished file or folder of a run.
 bool is_unfinished(const fs::path& name) {
   const std::string text = name.string(), finished = finished_name(text);
   return finished != text && (finished == kNewRun || is_run_file(finished));
 }
 
-/// Returns whether a name in the folder of a run is that of a file that remains if the run is killed before
-/// it has begun.
+/// Returns whether a file with this name may remain in the folder of a run that is killed before it has
+/// begun.
 bool is_leftover(const fs::path& name) {
   return name == kLockFile || name == kNewRunFile || is_unfinished(name);
 }
@@ -80,8 +80,7 @@ fs::path begun_run_file(const fs::path& folder) {
   return {};
 }
 
-/// Creates a folder with the name of an unfinished one, "NAME.part-PID-N", and returns its path. first: the
-/// smallest N.
+/// Creates a folder with the temporary name "NAME.part-PID-N" and returns its path. first: the smallest N.
 fs::path create_unfinished(const fs::path& name, int first = 0) {
   for (int number = first;; ++number) {
     const fs::path path =
@@ -90,8 +89,8 @@ fs::path create_unfinished(const fs::path& name, int first = 0) {
   }
 }
 
-/// Locks a file for as long as the object exists, if no other process has locked it. more_flags: of open(),
-/// for example O_CREAT.
+/// Locks a file for as long as the object exists, if no other process has locked it. more_flags: additional
+/// flags for open(), for example O_CREAT.
 class TriedLock {
  public:
   explicit TriedLock(const fs::path& file, int more_flags = 0)
@@ -119,8 +118,8 @@ bool has_only_leftovers(const fs::path& folder) {
 }
 
 /// Removes the folder of a new run that was killed before it began. The lock of the folder decides whether
-/// its run is alive, because process numbers are used again, and the process may be on another machine. If
-/// there is no lock file, it is created: another process was killed while it removed the folder.
+/// its run is alive, because process numbers are used again, and the process may be on another machine. A
+/// missing lock file is created: another process was killed while it removed the folder.
 void remove_if_abandoned(const fs::path& folder) {
   if (fs::is_empty(folder)) {  // no lock yet: the process was killed, or is about to make the lock
     ::rmdir(folder.c_str());
@@ -255,7 +254,7 @@ fs::path RunFolder::create_locked(const fs::path& folder) {
       lock_ = std::make_unique<Lock>(unfinished);
       return unfinished;
     } catch (const std::exception& fault) {
-      // Before the lock is made, another run may take the folder for an abandoned one, lock it and remove it.
+      // Before the lock is made, another run may find the folder abandoned, lock it and remove it.
       const bool locked = dynamic_cast<const OutputRefused*>(&fault) != nullptr;
       const bool removed = !exists_at_all(unfinished);
       std::error_code ignored;
@@ -311,8 +310,8 @@ bool RunFolder::refuse_unless_allowed(Existing existing, const fs::path& scene) 
   return false;
 }
 
-/// Removes unfinished files. In the folders of frames, other processes may write: there, only files that no
-/// process has locked, and whose processes do not exist on this machine, are removed.
+/// Removes unfinished files. Other processes may write in the folders of frames. In these folders, a file is
+/// removed only if no process has locked it and its process does not exist on this machine.
 void RunFolder::remove_unfinished_files() {
   std::vector<fs::path> unfinished;
   for (const fs::directory_entry& entry : entries_of(folder_))

@@ -1,4 +1,4 @@
-// The notes of a run: what its user should know of the setup, of the motion and of the accuracy.
+// The notes of a run for its user: about the setup, the motion and the accuracy.
 #include <pliant/io/run/run.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace pliant {
 namespace {
 
 /// Words of the notes on steps without error control and on open joints, by which they are found again.
-constexpr const char* kUncontrolledText = "resting contacts of many bodies, or of soft ones, in ";
+constexpr const char* kUncontrolledText = "resting contacts of many bodies, or of soft bodies, in ";
 constexpr const char* kOpenJointsText = " still open: ";
 
 }  // namespace
@@ -108,19 +108,19 @@ void Run::note_ground() {
   }
 }
 
-/// Adds notes on violations of the laws of contact. They replace those of earlier sessions of a resumed run.
-/// update_record() must have updated the counters.
+/// Adds notes on violations of the laws of contact. These notes replace the notes of earlier sessions of a
+/// resumed run. update_record() must have updated the counters.
 void Run::note_violations() {
   replace_notes(is_violation_note, violation_notes(record_.work.steps, scene_->body.contact));
 }
 
-/// Adds a note on the largest error of the energy balance. It replaces that of earlier sessions.
+/// Adds a note on the largest error of the energy balance, in place of the note of earlier sessions.
 void Run::note_energy_balance() {
   const std::string text = energy_note(*simulation_, *energies_);
   replace_notes(is_energy_note, text.empty() ? std::vector<std::string>() : std::vector<std::string>{text});
 }
 
-/// Adds a note on the steps whose error is not controlled. It replaces that of earlier sessions.
+/// Adds a note on the steps whose error is not controlled, in place of the note of earlier sessions.
 /// update_record() must have updated the counters.
 void Run::note_uncontrolled_steps() {
   std::vector<std::string> notes;
@@ -132,7 +132,7 @@ void Run::note_uncontrolled_steps() {
   replace_notes([](const std::string& note) { return note.rfind(kUncontrolledText, 0) == 0; }, notes);
 }
 
-/// Adds a note on the joints that are open at the end. It replaces that of earlier sessions.
+/// Adds a note on the joints that are open at the end, in place of the note of earlier sessions.
 void Run::note_open_joints() {
   const std::string text = open_joints_note(*simulation_);
   replace_notes([](const std::string& note) { return note.find(kOpenJointsText) != std::string::npos; },

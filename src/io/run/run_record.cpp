@@ -225,7 +225,7 @@ void read_options(const Json& options, RunRecord& r) {
   options.at("command").get_to(r.command);
 }
 
-/// Reads a violation of the laws of contact; returns an empty one if the record has none.
+/// Reads a violation of the laws of contact; returns an empty violation if the record has none.
 ContactViolation read_violation(const Json& monitors, const char* key) {
   if (!monitors.contains(key)) return {};
   const Json& violation = monitors.at(key);
@@ -259,8 +259,8 @@ void read_checksums(const Json& checksums, RunRecord& r) {
                    static_cast<std::uint32_t>(std::stoul(checksum.template get<std::string>(), nullptr, 16)));
 }
 
-/// Throws RecordingMismatch unless a run record is undamaged, and its run has the version that this program
-/// reads. Records of older versions may have no checksum and no version.
+/// Throws RecordingMismatch if a run record is damaged, or if its version is not the version that this
+/// program reads. Records of older versions may have no checksum and no version.
 void require_readable(const Json& json, const std::filesystem::path& file) {
   if (json.at("format") != kFormat) throw RecordingMismatch(file.string() + " is not the record of a run");
   if (json.contains("check") && json.at("check") != check_of(json))

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kText = "the run has hardly advanced: ";
 
-/// Returns a remedy, which depends on what makes the steps short.
+/// Returns a remedy, which depends on the cause of the short steps.
 std::string remedy_of(const Simulation& simulation, const SlowProgress& slow) {
   if (simulation.tolerance() == 0) return "Choose a shorter step.";
   if (slow.impacts > 0)

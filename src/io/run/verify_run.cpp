@@ -26,7 +26,7 @@ bool lists(const RunRecord& record, const std::string& file) {
   return std::find(record.files.begin(), record.files.end(), file) != record.files.end();
 }
 
-/// Performs a check that may throw, and adds its message to the faults of a verification.
+/// Performs a check. If the check throws, adds the message of the exception to the faults of a verification.
 void attempt(Verification& result, const std::function<void()>& check) {
   try {
     check();
@@ -39,7 +39,8 @@ void attempt(Verification& result, const std::function<void()>& check) {
   }
 }
 
-/// Adds a fault for each table whose checksum after all states of run.json is not that in run.json.
+/// Adds a fault for each table whose checksum differs from the checksum in run.json. now: the checksums of
+/// the tables after the number of states that run.json gives.
 void compare_checksums(const fs::path& folder, const RunRecord& record, const Checksums& now,
                        Verification& result) {
   for (const auto& [table, checksum] : now)

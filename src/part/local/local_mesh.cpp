@@ -54,7 +54,7 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   return best;
 }
 
-/// Returns the weights of a position x of a shell: those of the point of all triangles that is nearest to x.
+/// Returns the weights of a position x of a shell: the weights of the point nearest to x on any triangle.
 NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   NodeWeights best;
   double least_distance = std::numeric_limits<double>::infinity();

@@ -22,10 +22,10 @@ class MassRoot {
   Eigen::Index size() const { return 3 * n_nodes() + own_.size(); }
   /// M over nodes.
   const Eigen::SparseMatrix<double>& of_nodes() const { return M_; }
-  /// Return C d and C^-1 x for scalar fields over nodes. Each column of d or x is one field.
+  /// These functions return C d and C^-1 x for scalar fields over nodes. Each column of d or x is one field.
   MatX<double> root_of_nodes(const MatX<double>& d) const;
   MatX<double> solve_of_nodes(const MatX<double>& x) const;
-  /// Return C d, C^T x and C^-1 x for columns d or x over all coordinates.
+  /// These functions return C d, C^T x and C^-1 x for columns d or x over all coordinates.
   MatX<double> root(const MatX<double>& d) const;
   MatX<double> transposed(const MatX<double>& x) const;
   MatX<double> solve(const MatX<double>& x) const;

@@ -4,8 +4,8 @@
 //   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
 // Here K is the stiffness, M the mass matrix, and sigma a small shift (shift_of()) that makes K + sigma M
 // positive definite. Curved elements use the consistent M: the error of omega is positive and of fourth order
-// in the edge length. Straight elements and shells use the lumped M, whose error has the opposite sign to
-// that of their stiffness.
+// in the edge length. Straight elements and shells use the lumped M, because the errors of the lumped M and
+// of the stiffness have opposite signs.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -55,7 +55,7 @@ PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const 
   return fields;
 }
 
-/// Returns the stiffness matrix K of linear elasticity. Its constants are the sums of those of all laws.
+/// Returns the stiffness matrix K of linear elasticity. The constants lambda and mu are sums over all laws.
 MatX<double> stiffness(const PolynomialFields& fields, const std::vector<Elasticity>& laws, double volume) {
   const Eigen::Index n = fields.L.size();
   std::array<MatX<double>, 3> gradient;

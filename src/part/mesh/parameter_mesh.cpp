@@ -17,7 +17,7 @@ struct Corner {
 };
 using Triangle = std::array<Corner, 3>;
 
-/// Returns x plus the multiple of 2 pi that brings it nearest to `to`.
+/// Returns x + 2 pi n with the integer n for which the result is nearest to `to`.
 double near(double x, double to) {
   return x + 2 * kPi * std::round((to - x) / (2 * kPi));
 }

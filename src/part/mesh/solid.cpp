@@ -67,8 +67,8 @@ Corners ball_corners(const Labels& label, const Surface& surface, int m) {
   for (int i = -m; i < m; ++i)
     for (int j = -m; j < m; ++j)
       for (int k = -m; k < m; ++k) {
-        // Each element is a path from the corner of the cell nearest to the centre, one step along each axis;
-        // there are six orders of the axes.
+        // The corners of an element follow a path that starts at the corner of the cell nearest to the centre
+        // and has one step along each axis. The six orders of the axes give the six elements of the cell.
         const std::array<int, 3> step{i < 0 ? -1 : 1, j < 0 ? -1 : 1, k < 0 ? -1 : 1};
         const LatticePoint inner{i < 0 ? i + 1 : i, j < 0 ? j + 1 : j, k < 0 ? k + 1 : k};
         std::array<std::size_t, 3> axes{0, 1, 2};
@@ -104,7 +104,7 @@ struct TubeSection {
   };
   std::vector<Node> nodes;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<bool> outwards;  ///< whether a triangle has one node on the outer ring and two on the inner one
+  std::vector<bool> outwards;  ///< whether a triangle has one node on the outer and two on the inner ring
 
   explicit TubeSection(int m) {
     for (int n = m; n > 0; n -= 2) {
@@ -214,7 +214,7 @@ std::vector<TetrahedronPoint> spread_points() {
   return points;
 }
 
-/// Adds the nodes of quadratic and enriched elements to those of straight ones.
+/// Adds the nodes of quadratic and enriched elements to the corner nodes.
 class ElementNodes {
  public:
   ElementNodes(const Labels& label, Corners corners)

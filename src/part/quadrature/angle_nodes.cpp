@@ -52,7 +52,7 @@ class PowerPanel {
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
   /// Adds n nodes. The integrand consists of powers of t and of t^(2/eps). With t = x^q and q a multiple of
-  /// eps, the powers of t^(2/eps) are smooth in x; q >= 4 makes those of t smooth enough.
+  /// eps, the powers of t^(2/eps) are smooth in x; with q >= 4 the powers of t are smooth enough.
   void add(int n) {
     const double reach = std::exp2(-panel_.eps / 2);
     for (const QuadratureNode& node : one_end_rule(n, panel_.eps * std::ceil(4 / panel_.eps)))
@@ -83,9 +83,9 @@ class LogPanel {
   LogPanel(const Panel& panel, const Kinks& kinks, std::vector<AngleNode>& nodes)
       : panel_(panel), kinks_(kinks), nodes_(nodes) {}
 
-  /// Adds n nodes. Their density decreases with the distance d from the kinks as 1 / (width + d): the kinks
-  /// are resolved, and every decay rate too. `near` is the sine or cosine that vanishes at the axis. The rule
-  /// ends where |near|^eps, a factor of the mass, is e^-37, a rounding error relative to 1.
+  /// Adds n nodes. The density of nodes decreases with the distance d from the kinks as 1 / (width + d), so
+  /// that the rule resolves the kinks and every decay rate. `near` is the sine or cosine that vanishes at the
+  /// axis. The rule ends where |near|^eps, a factor of the mass, is e^-37, a rounding error relative to 1.
   void add(int n) {
     const double stretch = std::log1p(37 / (panel_.eps * kinks_.width));
     for (const QuadratureNode& node : gauss_rule(n)) {

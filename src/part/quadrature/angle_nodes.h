@@ -15,9 +15,9 @@ struct AngleNode {
   double weight;
 };
 
-/// Where integrands with dynamic exponents vary fastest in a quadrant of an angle, in terms of the variable
-/// y = log |tan|. The interval [from, to] contains the kinks for all values of the exponents. `width` is the
-/// distance of the nearest complex singularity from a kink.
+/// The region of a quadrant of an angle in which integrands with dynamic exponents vary fastest, in terms of
+/// the variable y = log |tan|. The interval [from, to] contains the kinks for all values of the exponents.
+/// `width` is the distance of the nearest complex singularity from a kink.
 struct Kinks {
   double from = 0, to = 0, width = kPi / 2;
 };

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-/// Number of nodes in a panel for each level of refinement. Every two levels the number about doubles.
+/// Number of nodes in a panel for each level of refinement. Two further levels about double this number.
 constexpr std::array<int, 12> kBodySizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr std::size_t kLastBodyLevel = kBodySizes.size() - 3;
 /// Changes of the moments by two further levels, relative to the volume. A rule whose change is at most
@@ -69,8 +69,8 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
 
 /// Returns the first level along one direction at which two further levels change no moment by more than
 /// kMomentTolerance. The other directions have coarse nodes. If there is no such level, the result is the
-/// last level whose change was less than half of the smallest change before, and `remaining` is raised to
-/// this change.
+/// last level whose change was less than half of the smallest change before, and `remaining` becomes this
+/// change if it was smaller.
 std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
                              std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;

@@ -43,7 +43,7 @@ class MassIntegrands {
   static constexpr const char* subject = "mass matrix";
   static constexpr int kEach = 3;
   static constexpr double kTolerance = 2e-14, kRequired = 1e-12;
-  /// A mass distribution with jumps has no level that suffices. Its search ends at level 9 (80 nodes in a
+  /// For a mass distribution with jumps, no level suffices. The search then ends at level 9 (80 nodes in a
   /// panel) after seconds; kLastLevel would take a minute.
   int last_level() const { return shape_.distribution == nullptr ? kLastLevel : 9; }
 
@@ -56,10 +56,11 @@ class MassIntegrands {
   }
   int n() const { return ranges_.n(); }
   int n_states() const { return n() == 0 ? 8 : 48; }
-  /// The kinks of the radial map move, and its integrands at some corners of the ranges differ from most
-  /// others. With 3 integrands for each dimension, errors of 7e-11 were measured for this map; with 12,
-  /// errors below 1e-12. All other parts use 3: a bent and twisted cylinder then has errors of 4e-12 (1e-14
-  /// with 12), but a bent and twisted supertoroid would need more than 2 million points with 12.
+  /// Returns the accuracy of thinning. In the radial map the kinks move with the exponents, and the
+  /// integrands at some corners of the ranges differ from most others. With 3 integrands for each dimension
+  /// (Thinning), errors of 7e-11 were measured for this map; with 12, errors below 1e-12. All other parts use
+  /// 3: a bent and twisted cylinder then has errors of 4e-12 (1e-14 with 12), but a bent and twisted
+  /// supertoroid would need more than 2 million points with 12.
   Thinning thinning() const {
     if (!shape_.dynamic_exponents) return {1e-15};
     return {1e-14, shape_.part.shape().bounded_exponents() ? 12 : 3};
@@ -182,7 +183,7 @@ class MassIntegrands {
   }
   /// Scales each column of L, and the acceleration, to a root mean square of 1, so that small and large
   /// entries of M have equal weight. Columns that are small in comparison with the whole body are multiplied
-  /// by `largest` instead: they have large relative rounding errors, and do not matter for M.
+  /// by `largest` instead. Such columns have large relative rounding errors, and do not matter for M.
   static void scale_columns(const std::vector<RestPoint>& points, const Eigen::VectorXd& largest,
                             Kinematics& all) {
     const Eigen::VectorXd factors = unit_factors(points, all).cwiseMin(largest);
@@ -286,7 +287,7 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
 
 namespace {
 
-/// Returns the moments of order 0, 1 and 2 of masses at rest, kg. Places are in units of Part::size().
+/// Returns the moments of order 0, 1 and 2 of masses at rest, kg. Positions are in units of Part::size().
 Vec<double, 13> moments_of(const Part& part, const std::vector<Material<double>>& at,
                            const VecX<double>& mass) {
   const Eigen::Matrix3Xd X = part.s(at, part.parameters().rest()) / part.size();
@@ -311,7 +312,8 @@ double difference_from_grid(const Part& part, const std::vector<RestPoint>& poin
   return change.lpNorm<Eigen::Infinity>() / std::max(mass.sum(), grid.mass.sum());
 }
 
-/// Returns the points of a part with a mass distribution; nullptr: the same density everywhere.
+/// Returns the mass points of a part. distribution: the mass distribution; nullptr for the same density
+/// everywhere.
 MassPoints place_points(const Part& part, const MassDistribution* distribution, int doublings) {
   RestShape shape(part, distribution);
   throw_if_folded(part, shape.rest, "rest");

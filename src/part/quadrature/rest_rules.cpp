@@ -22,8 +22,9 @@ Follows follows(const Part& part) {
     if (link.sections != Sections::stay_affine) worst = std::max(worst, Follows::section);
     tilted = tilted || link.sections == Sections::tilt;
   }
-  // A bend tilts the sections. A shear after the bend depends on z, which then varies over a section. But it
-  // is affine in (x, y, z), so that plane sections stay plane: the result is not Follows::free.
+  // A bend tilts the sections. A shear after the bend depends on z, which then varies over a section. The
+  // shear is affine in (x, y, z), however, so that plane sections stay plane: the result is not
+  // Follows::free.
   return worst;
 }
 
@@ -73,8 +74,8 @@ Trig<double> drop(const Trig<Dual<1>>& t) {
   return {t.x.v, t.sign.v, t.log_abs.v};
 }
 
-/// Four of the eight mirror images by the coordinate planes. They have the zero first moments and products of
-/// inertia of all eight.
+/// Four of the eight mirror images by the coordinate planes. The first moments and products of inertia of
+/// these four images are zero, as for all eight images.
 constexpr std::array<MirrorSigns, 4> kImages{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
 
 Trig<double> times_sign(Trig<double> t, double sign) {
@@ -277,8 +278,8 @@ Eigen::VectorXd ring_masses(const RestShape& r, const AngleNode& u, const Quadra
   return masses.cwiseProduct(mass_multiples(r.part, *r.distribution, points));
 }
 
-/// Returns the coordinates (columns) in which displacements are affine along a ring. For Follows::ring they
-/// are (C_v^eps, S_v^eps) with the exponent eps of the ring; otherwise they are (x, y).
+/// Returns the coordinates (columns) in which displacements are affine along a ring. For Follows::ring the
+/// coordinates are (C_v^eps, S_v^eps) with the exponent eps of the ring; otherwise they are (x, y).
 Eigen::Matrix2Xd ring_coordinates(const RestShape& r, const std::vector<AngleNode>& v,
                                   const RingTangents& nodes) {
   if (r.follows != Follows::ring) return nodes.e.topRows<2>();

@@ -28,7 +28,7 @@
 
 namespace pliant::rule_search {
 
-/// Number of nodes in a panel for each level of refinement. Every two levels the number about doubles.
+/// Number of nodes in a panel for each level of refinement. Two further levels about double this number.
 inline constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 inline constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 inline int size_at(int level) {
@@ -68,7 +68,7 @@ struct Thinning {
 struct Column {
   std::vector<RestPoint> points;
   std::vector<Eigen::Index> node;  ///< number of the node of each point
-  /// Assigns the points that were appended since the last call to node number `which`.
+  /// Assigns to node number `which` the points that were appended since the last call.
   void end_node(Eigen::Index which) { node.resize(points.size(), which); }
 };
 /// Columns at several places; n_nodes is the number of nodes along the direction.
@@ -85,8 +85,8 @@ class StateRanges {
     for (int i : all.dynamic()) {
       const Parameter& p = all[i];
       const double rest = p.rest_value();
-      // An offset is a length that is not relative to its rest value. It stays within twice the size of the
-      // body.
+      // An offset is a length that is not relative to its rest value. The states keep an offset within twice
+      // the size of the body.
       const bool offset = !p.spec->relative && p.spec->quantity == Quantity::length;
       const double scale = p.spec->relative ? rest : (offset ? part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;

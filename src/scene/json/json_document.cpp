@@ -47,8 +47,8 @@ const JsonValue* child(const JsonValue& parent, const std::string& key) {
   return &parent.array()[index];
 }
 
-/// Extends `pointer` by the path from a value to the value with address `wanted`. Returns false and leaves
-/// `pointer` unchanged if `from` does not contain this address.
+/// Extends `pointer` by the path from the value `from` to the value with address `wanted`. Returns false and
+/// leaves `pointer` unchanged if `from` does not contain this address.
 bool find_address(const JsonValue& from, const JsonValue* wanted, std::string* pointer) {
   if (&from == wanted) return true;
   const std::size_t length = pointer->size();

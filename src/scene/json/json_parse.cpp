@@ -107,7 +107,7 @@ class Builder final : public nlohmann::json_sax<json> {
     return begin;
   }
   /// Moves the cursor past the next token, a number or a literal. Returns the offset of the token. The event
-  /// parser reads "truex" and "1.5m" as a value followed by other text. This function then throws the Fault,
+  /// parser reads "truex" and "1.5m" as a value followed by other text. This function then throws a Fault,
   /// so that the message shows the whole word.
   std::size_t word_token() {
     const std::size_t begin = next();

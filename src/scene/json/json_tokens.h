@@ -20,8 +20,8 @@ std::size_t scalar_end(std::string_view text, std::size_t at);
 /// punctuation of JSON, or the end of the text.
 std::size_t word_end(std::string_view text, std::size_t at);
 
-/// Returns the offset in the text of byte number `byte`, from 0, of a decoded string. at: offset of the
-/// opening quote.
+/// Returns the offset in the text of byte number `byte` (counted from 0) of a decoded string. at: offset of
+/// the opening quote.
 std::size_t string_byte(std::string_view text, std::size_t at, std::size_t byte);
 
 /// Returns the value of the four hexadecimal digits at `at`, or -1 if there are not four digits.

@@ -30,8 +30,8 @@ T binary_number(const char* from, bool little_endian = true) {
 /// The types of numbers in binary files.
 enum class NumberType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Returns the number of a type that begins at a byte; a double represents each of them exactly. The caller
-/// checks that size_of(type) bytes are there.
+/// Returns the number of a type that begins at a byte. A double represents the numbers of all types exactly.
+/// The caller checks that size_of(type) bytes are there.
 inline double binary_number(NumberType type, const char* from, bool little_endian = true) {
   switch (type) {
     case NumberType::int8:

@@ -66,7 +66,8 @@ class MeshCleaner {
     if (n > 0) notes_.push_back(counted(n, one, many) + rest);
   }
 
-  /// Numbers the positions in the order of the file, and counts the vertices that no triangle uses.
+  /// Gives each distinct position one number, in the order of the file, and counts the vertices that no
+  /// triangle uses.
   void merge_positions(const RawMesh& raw) {
     std::map<std::array<double, 3>, int> number_at;
     std::vector<int> number;
@@ -215,7 +216,7 @@ class MeshCleaner {
     return all;
   }
 
-  /// Removes the positions without triangle and numbers the others anew.
+  /// Removes the positions that no triangle uses and renumbers the remaining positions.
   void drop_unused(Eigen::Matrix3Xi& triangles) {
     std::vector<int> number(x_.size(), -1);
     for (const int corner : triangles.reshaped()) number[at(corner)] = 0;

@@ -1,4 +1,4 @@
-// Removes the common flaws of mesh files, which do not change the surface, and reports them.
+// Removes common flaws of mesh files and reports them. The surface stays the same, except at slivers.
 #pragma once
 
 #include <pliant/scene/mesh_file.h>

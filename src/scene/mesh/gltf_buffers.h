@@ -16,14 +16,14 @@ namespace pliant::gltf {
 
 class Buffers {
  public:
-  /// root: the JSON document. embedded: the binary chunk of a GLB file; may be empty. folder: that of the
-  /// file.
+  /// root: the JSON document. embedded: the binary chunk of a GLB file; may be empty. folder: the folder of
+  /// the glTF file.
   Buffers(Value root, std::string embedded, std::filesystem::path folder)
       : root_(std::move(root)), embedded_(std::move(embedded)), folder_(std::move(folder)) {}
 
   /// Return the vectors (type VEC3, finite) or integers (type SCALAR, below `limit`) of an accessor. user:
-  /// the JSON number that selects the accessor; messages name its place. They throw std::invalid_argument
-  /// with the place of a fault, and FileError for a buffer file that cannot be read.
+  /// the JSON number that selects the accessor; messages name its place. vectors() and integers() throw
+  /// std::invalid_argument with the place of a fault, and FileError for a buffer file that cannot be read.
   std::vector<Vec3<double>> vectors(const Value& user);
   std::vector<std::size_t> integers(const Value& user, std::size_t limit);
 

@@ -1,5 +1,5 @@
-// Access to the JSON text of a glTF file. Errors name the file, the JSON pointer of the value, and what was
-// expected.
+// Access to the JSON text of a glTF file. Errors name the file, the JSON pointer of the value, the value
+// found and the value expected.
 #pragma once
 
 #include <string>
@@ -17,7 +17,8 @@ class Value {
       : file_(&file), json_(json), pointer_(std::move(pointer)) {}
 
   bool exists() const { return json_ != nullptr; }
-  /// Returns a member of an object; throws if this value is neither absent nor an object.
+  /// Returns a member of an object, or a null value if this value is absent. Throws std::invalid_argument if
+  /// this value exists and is not an object.
   Value operator[](const std::string& key) const;
   /// Returns the number of elements of an array; 0 if there is no value.
   std::size_t size() const;

@@ -131,7 +131,7 @@ void send(int to, const std::vector<Number>& numbers) {
   ::_exit(0);
 }
 
-/// Receives everything that a process sends. Returns false if it takes longer than kImportSeconds.
+/// Receives all bytes that a process sends. Returns false if this takes longer than kImportSeconds.
 bool receive(int from, std::string& bytes) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kImportSeconds);
   std::vector<char> buffer(1 << 16);
@@ -166,7 +166,7 @@ std::vector<Number> take(const std::string& bytes, std::size_t& at) {
   return numbers;
 }
 
-/// Runs the import in a process of its own, and returns what it sends.
+/// Runs the import in a separate process, and returns the bytes that this process sends.
 std::string import_apart(const std::string& file) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)

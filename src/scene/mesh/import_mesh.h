@@ -12,10 +12,10 @@ namespace pliant {
 inline constexpr std::array<const char*, 4> kImportedEndings{".dae", ".fbx", ".3ds", ".off"};
 
 /// Reads all meshes of a file, each transformed by the nodes that contain it, in single precision. assimp
-/// runs in a process of its own, with at most kImportSeconds of time and kImportBytes of memory, because
-/// damaged files can crash it, or keep it busy for ever. Throws std::invalid_argument with the reason if the
-/// file is not a mesh of triangles and polygons with finite vertices, if the import takes too long, or if it
-/// crashes. Throws FileError if the file cannot be read.
+/// runs in a separate process, with at most kImportSeconds of time and kImportBytes of memory, because
+/// damaged files can crash assimp, or keep it busy for ever. Throws std::invalid_argument with the reason if
+/// the file is not a mesh of triangles and polygons with finite vertices, if the import takes too long, or if
+/// the import crashes. Throws FileError if the file cannot be read.
 RawMesh import_mesh(const std::filesystem::path& file);
 
 inline constexpr int kImportSeconds = 20;

@@ -10,8 +10,8 @@ namespace pliant {
 /// Largest size of a mesh file and of all buffers of a glTF file.
 inline constexpr std::size_t kMaxMeshBytes = std::size_t{256} << 20;
 
-/// Throws FileError for a file that cannot be read, has more than kMaxMeshBytes, or is not a regular file (a
-/// pipe or a device).
+/// Returns the bytes of a file. Throws FileError for a file that cannot be read, has more than kMaxMeshBytes,
+/// or is not a regular file (a pipe or a device).
 std::string read_mesh_bytes(const std::filesystem::path& file);
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ struct Property {
   std::string name;
   NumberType type;
   bool list = false;
-  NumberType count_type = NumberType::uint8;  ///< of the number of entries of a list
+  NumberType count_type = NumberType::uint8;  ///< type of the number of entries of a list
 };
 struct Element {
   std::string name;
@@ -28,7 +28,8 @@ struct Header {
   std::size_t size = 0;  ///< bytes of the header, with the line end after end_header
 };
 
-/// Throws std::invalid_argument, with line and column, for a header that is not valid.
+/// Returns the header of a file. Throws std::invalid_argument, with line and column, for a header that is not
+/// valid.
 Header read_header(const MeshBytes& file);
 
 }  // namespace pliant::ply

@@ -40,8 +40,8 @@ void add_triangle(const Polygon& polygon, int a, int b, int c, RawMesh& mesh) {
   mesh.triangles.push_back({polygon.corners[a], polygon.corners[b], polygon.corners[c]});
 }
 
-/// Returns the position in `left` of a corner whose triangle with its neighbours is an ear. If there is none
-/// (the polygon crosses itself), returns 0.
+/// Returns the position in `left` of a corner whose triangle with its neighbours is an ear. If there is no
+/// such corner (the polygon crosses itself), returns 0.
 std::size_t find_ear(const Polygon& polygon, const std::vector<int>& left) {
   const std::size_t n = left.size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// Faces of a file with any number of corners, and their division into triangles.
+// Faces with any number of corners, as in a mesh file, and their division into triangles.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace pliant {
 
-/// The faces of a file in its order. corners: vertex numbers of all faces, one face after the other; sizes:
+/// The faces in the order of the file. corners: vertex numbers of all faces, one face after the other; sizes:
 /// number of corners of each face, at least 3.
 struct Polygons {
   std::vector<int> corners, sizes;
 };
 
 /// Appends the triangles of the polygons to a mesh. Convex polygons become fans about their first corner;
-/// other polygons lose ears until a triangle remains. Throws std::invalid_argument for a polygon of more than
-/// 1000 corners that is not convex, and for more than kMaxTriangles triangles. name: the file, for messages.
+/// from other polygons ears are cut until a triangle remains. Throws std::invalid_argument for a polygon of
+/// more than 1000 corners that is not convex, and for more than kMaxTriangles triangles. name: the file, for
+/// messages.
 void add_polygons(const Polygons& polygons, const std::string& name, RawMesh& mesh);
 
 }  // namespace pliant

@@ -20,9 +20,9 @@ struct MeshBytes {
 };
 
 struct RawMesh {
-  std::vector<Vec3<double>> vertices;         ///< finite
+  std::vector<Vec3<double>> vertices;         ///< with finite coordinates
   std::vector<std::array<int, 3>> triangles;  ///< numbers of existing vertices
-  std::vector<std::string> notes;             ///< what the reader has ignored, for the user
+  std::vector<std::string> notes;             ///< messages for the user about ignored parts of the file
 };
 
 /// Returns "1 line is" or "2 lines are": a number with a noun and the verb.

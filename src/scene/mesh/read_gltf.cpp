@@ -19,7 +19,7 @@ namespace gltf {
 
 namespace {
 
-/// A glTF file in its two parts.
+/// The two parts of a glTF file: JSON text and binary data.
 struct Parts {
   std::string json, binary;
 };
@@ -29,7 +29,7 @@ Parts split_glb(const MeshBytes& file) {
   constexpr std::uint32_t json_type = 0x4e4f534a, binary_type = 0x004e4942;
   const std::string& bytes = file.bytes;
   if (bytes.size() < 12 || bytes.compare(0, 4, "glTF") != 0)
-    fail_at_byte(file, 0, "other bytes", "glTF, the begin of a GLB file");
+    fail_at_byte(file, 0, "other bytes", "glTF, the first bytes of a GLB file");
   Parts parts;
   for (std::size_t at = 12; at + 8 <= bytes.size();) {
     const std::size_t length = binary_number<std::uint32_t>(bytes.data() + at);
@@ -108,8 +108,8 @@ class GltfReader {
         if (required[k].text() == known) required[k].fail(known, "a mesh without compression");
   }
 
-  /// Returns the root nodes of the default scene, or of the first one; without scenes all nodes without
-  /// parent.
+  /// Returns the root nodes of the default scene, or of the first scene. If the file has no scenes, returns
+  /// all nodes without a parent.
   std::vector<std::size_t> roots() const {
     const Value scenes = root_["scenes"], nodes = root_["nodes"];
     std::vector<std::size_t> found;
@@ -130,9 +130,10 @@ class GltfReader {
     return found;
   }
 
-  /// Returns the last index of an array, for a value that is such an index.
+  /// Returns the largest valid index of an array. index: the value that must be such an index; an empty array
+  /// is a fault at this value.
   static std::size_t last(const Value& array, const Value& index) {
-    if (array.size() == 0) index.fail("an index", "no index, since there are no such objects");
+    if (array.size() == 0) index.fail("an index", "no index, because the file has no objects of this kind");
     return array.size() - 1;
   }
 

@@ -5,7 +5,8 @@
 
 namespace pliant {
 
-/// Throws std::invalid_argument, with file, line and column, for a text that is not OBJ.
+/// Returns the mesh of a file. Throws std::invalid_argument, with file, line and column, for a text that is
+/// not OBJ.
 RawMesh read_obj(const MeshBytes& file);
 
 }  // namespace pliant

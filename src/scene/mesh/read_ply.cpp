@@ -19,10 +19,10 @@ namespace ply {
 
 namespace {
 
-/// The largest number of additional bytes between the header and the data of a binary file that are found.
-/// Some programs pad the header, for example to a multiple of 64 bytes. The lengths of lists are in the data,
-/// so that only reading shows whether a place is right. Reading from a wrong place ends soon: at a number
-/// that is not finite, at an impossible length or number of a vertex, or before the end of the file.
+/// The largest number of additional bytes between the header and the data of a binary file that the reader
+/// can skip. Some programs pad the header, for example to a multiple of 64 bytes. The lengths of lists are in
+/// the data, so that the reader must try each place. Reading from a wrong place fails soon: at a number that
+/// is not finite, at an impossible length or number of a vertex, or before the end of the file.
 constexpr std::size_t kMaxDataShift = 64;
 
 /// The values of a text file, one after the other.
@@ -40,9 +40,9 @@ class TextValues {
   void skip(NumberType) {
     if (words_.next().empty()) words_.fail("a value of a property");
   }
-  /// Smallest number of bytes of a value.
+  /// Smallest number of bytes of a value with the blank after it.
   static std::size_t least_size(NumberType) { return 2; }
-  /// Number of bytes that are left; one more for the last value, which no blank follows.
+  /// Number of bytes that are left, plus 1, because no blank follows the last value.
   std::size_t remaining() const { return words_.remaining() + 1; }
   [[noreturn]] void fail(const std::string&, const std::string& expected) { words_.fail(expected); }
   /// Returns the number of bytes after the last value, without blanks and line ends.
@@ -123,7 +123,8 @@ class PlyReader {
   std::size_t left_over() const { return left_over_; }
 
  private:
-  /// Refuses an element that cannot be in the rest of the file, before any of its values is stored.
+  /// Refuses an element that needs more bytes than the rest of the file has, before any of its values is
+  /// stored.
   void check_size(const Element& element) const {
     std::size_t least = 0;
     for (const Property& p : element.properties) least += Values::least_size(p.list ? p.count_type : p.type);
@@ -137,7 +138,7 @@ class PlyReader {
     for (std::size_t k = 0; k < element.properties.size(); ++k)
       for (const char* name : names)
         if (element.properties[k].name == name && element.properties[k].list == list) return k;
-    fail_at_byte(file_, element.byte, "an element \"" + element.name + "\" without it",
+    fail_at_byte(file_, element.byte, "an element \"" + element.name + "\" without a required property",
                  std::string(list ? "a property list " : "a property ") + *names.begin());
   }
 

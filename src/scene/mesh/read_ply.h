@@ -6,7 +6,8 @@
 
 namespace pliant {
 
-/// Throws std::invalid_argument, with line and column or byte, for bytes that are not PLY.
+/// Returns the mesh of a file. Throws std::invalid_argument, with line and column or byte, for bytes that are
+/// not PLY.
 RawMesh read_ply(const MeshBytes& file);
 
 }  // namespace pliant

@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kHeader = 80, kCount = 4, kTriangle = 50, kNormal = 12;
-/// Headers that are longer by up to this number of bytes are found by the size of the file.
+/// A header may be longer by up to this number of bytes. The size of the file then shows its length.
 constexpr std::size_t kMaxHeaderShift = 256;
 
 bool is_text(const std::string& bytes) {
@@ -76,8 +76,8 @@ std::uint64_t count_at(const MeshBytes& file, std::size_t byte) {
   return binary_number<std::uint32_t>(file.bytes.data() + byte);
 }
 
-/// Returns the number of additional bytes in the header. Adds a note for additional bytes there or at the
-/// end.
+/// Returns the number of additional bytes in the header. Adds a note for additional bytes in the header or at
+/// the end of the file.
 std::size_t find_shift(const MeshBytes& file, RawMesh& mesh) {
   const std::uint64_t size = file.bytes.size(),
                       needed = kHeader + kCount + kTriangle * count_at(file, kHeader);

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Throws std::invalid_argument, with the place, for bytes that are not STL.
+/// Returns the mesh of a file. Throws std::invalid_argument, with the place, for bytes that are not STL.
 RawMesh read_stl(const MeshBytes& file);
 
 }  // namespace pliant

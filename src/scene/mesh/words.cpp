@@ -16,15 +16,15 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/// Removes a plus sign at the beginning of a word, which std::from_chars does not accept. It stays if it is
-/// the whole word, or if another sign follows.
+/// Removes a plus sign at the beginning of a word, which std::from_chars does not accept. The sign stays if
+/// the word has no other character, or if another sign follows.
 std::string_view without_plus(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   return word;
 }
 
-/// Returns whether a decimal number outside the range of double is too large; otherwise it is too close to
-/// zero. It may have any number of digits.
+/// Returns whether a decimal number outside the range of double is too large; if not, the number is too close
+/// to zero. The number may have any number of digits.
 bool is_too_large(std::string_view digits) {
   const std::size_t e = std::min(digits.size(), digits.find_first_of("eE"));
   long long exponent = 0;
@@ -35,7 +35,7 @@ bool is_too_large(std::string_view digits) {
   const std::string_view mantissa = digits.substr(0, e);
   const std::size_t point = std::min(mantissa.size(), mantissa.find('.')),
                     leading = std::min(mantissa.size(), mantissa.find_first_of("123456789"));
-  // The first digit that is not zero is `places` places before the decimal point, or after it if negative.
+  // The first nonzero digit is `places` digits before the decimal point, or -`places` digits after the point.
   const long long places = static_cast<long long>(point) - static_cast<long long>(leading);
   return exponent > -places;
 }

@@ -12,7 +12,7 @@ namespace pliant {
 
 class Words {
  public:
-  /// file: must exist as long as this object.
+  /// file: must outlive this object.
   explicit Words(const MeshBytes& file, std::size_t begin = 0)
       : file_(file), text_(file.bytes), at_(begin), word_at_(begin) {}
 
@@ -29,10 +29,10 @@ class Words {
   std::size_t position() const { return at_; }
 
   /// Return a word as a finite number, or as an integer from `min` to `max`. The word must be the last one
-  /// that was returned. meaning: noun for the number. They throw the error of fail().
+  /// that was returned. meaning: noun for the number. number() and integer() throw the error of fail().
   double number(std::string_view word, const char* meaning) const;
   long long integer(std::string_view word, long long min, long long max, const char* meaning) const;
-  /// Throws std::invalid_argument: file, line and column of the last word, the word, and what was expected.
+  /// Throws std::invalid_argument with file, line and column of the last word, the word, and `expected`.
   [[noreturn]] void fail(const std::string& expected) const;
 
  private:

@@ -23,7 +23,8 @@ schema::Record coloring_record() {
        optional(
            "range", range,
            "Values of the first and the last colour. When absent, from 0 to a round number above the "
-           "99th percentile of the values at all vertices, in the recorded state in which it is largest."),
+           "99th percentile of the values at all vertices, in the recorded state in which this percentile is "
+           "largest."),
        optional("parts", array(name(), 1), "Names of the parts; when absent, all parts that deform.")}};
 }
 

@@ -47,9 +47,9 @@ schema::Record pair_record() {
        optional("touch", boolean(),
                 "Whether the two touch. Parts tied by a joint touch only if a pair names both.", "true"),
        optional("friction", number(at_least(0), "1"),
-                "Coulomb's coefficient of this pair; when absent, that of \"contact\"."),
+                "Coulomb's coefficient of this pair; when absent, the coefficient of \"contact\"."),
        optional("restitution", number(between(0, 1), "1"),
-                "Restitution of this pair; when absent, that of \"contact\".")}};
+                "Restitution of this pair; when absent, the restitution of \"contact\".")}};
 }
 
 schema::Record sleep_record() {
@@ -85,12 +85,13 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
        optional(
            "tolerance", number(between(kMinContactTolerance, kMaxContactTolerance), "1"),
            "Accuracy of contact. The velocities at contacts violate Coulomb's and Newton's laws by at most "
-           "this share of the largest speed that contact stops. At rest it is the speed that gravity gives "
-           "a body in a step. At an impact it is (1 + restitution) times the speed of the impact. Overlaps "
-           "up to a thousandth of the tolerance, in sizes of the smaller body, remain. They are at most half "
-           "of the gap of resting contacts, normally 5e-7 sizes, which a tolerance of 5e-4 reaches. At nodes "
-           "of a mesh, overlaps up to 8e-4 sizes remain with any tolerance. When absent, velocities and "
-           "overlaps are as exact as rounding allows."),
+           "this share of the largest speed that contact stops. At rest, this speed is the speed that "
+           "gravity gives a body in a step. At an impact, this speed is (1 + restitution) times the speed of "
+           "the impact. Overlaps up to a thousandth of the tolerance, in sizes of the smaller body, remain. "
+           "But overlaps are at most half of the gap of resting contacts (normally 5e-7 sizes), so that "
+           "tolerances above 5e-4 allow no deeper overlaps. At nodes of a mesh, overlaps up to 8e-4 sizes "
+           "remain with any tolerance. When absent, velocities and overlaps are as exact as rounding "
+           "allows."),
        optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
        optional(
            "longest_step", number(above(0), "s"),
@@ -102,7 +103,7 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
            "0.002"),
        optional("interval", number(above(0), "s"),
                 "With a \"tolerance\", bodies that may meet within an interval of this length step together, "
-                "apart from all others. Fast or small scenes need a shorter interval.",
+                "separately from all other bodies. Fast or small scenes need a shorter interval.",
                 "0.0078125"),
        optional("sleep", record(sleep_record()), "Sleep of bodies at rest; when absent, no body sleeps."),
        optional("planes", array(record(plane_record(color))), "Impenetrable planes.", "[]"),

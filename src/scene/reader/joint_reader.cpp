@@ -44,8 +44,8 @@ Stabilization read_stabilization(const Reader& r, SceneFaults& faults) {
 
 namespace {
 
-/// Returns whether a joint constrains no motion: both ends are immobile, are one point, or are on one rigid
-/// part. If so, reports the fault.
+/// Returns whether a joint constrains no motion: both ends are immobile, are the same point, or are on the
+/// same rigid part. If so, reports the fault.
 bool constrains_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
   auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
   if (!moves(from) && !moves(to)) {

@@ -24,9 +24,9 @@ bool has_ring(const Reader& r);
 /// ring.
 std::vector<std::string> ring_names(const Reader& r);
 
-/// Reads an entry of the list of joints without its drive, and adds its joints to the MultiBody: one, or
-/// those of its ring with the names NAME.1, NAME.2, ... Returns the joints. If the entry has faults, they are
-/// reported instead, and the result is empty.
+/// Reads an entry of the list of joints without its drive, and adds one joint to the MultiBody, or the joints
+/// NAME.1, NAME.2, ... of a ring. Returns these joints. If the entry has faults, they are reported instead,
+/// and the result is empty.
 std::vector<Joint*> read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
                                MultiBody& body);
 

@@ -89,7 +89,7 @@ std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& se
   for (const Point* end : {&setting.from, &setting.to})
     if (end->part != nullptr && radius < kSmallestRadius * end->part->size()) {
       std::ostringstream message;
-      message << "the ring is too small to hold the orientation of part \"" << end->part->name()
+      message << "the ring is too small to fix the orientation of part \"" << end->part->name()
               << "\"; expected a radius of at least " << kSmallestRadius * end->part->size() << " m";
       faults.value(r.at("radius"), message.str());
       return {};

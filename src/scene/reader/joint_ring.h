@@ -15,11 +15,12 @@ namespace pliant {
 /// e_1, e_2 perpendicular to the axis, and the angles a_k = 2 pi k / count, the points of the side `to` are
 ///   X + radius (cos a_k e_1 + sin a_k e_2)
 /// (m, in the frame of the part at rest or in the world), with X the point of the setting. The points of the
-/// side `from` have these directions if the part of `from` has a given orientation relative to the part of
-/// `to`: setting.rotation, or without it the orientation at time 0. The points of both sides are therefore
-/// the corners of equal polygons, except that points of a shell are moved to its surface. r: an object of
-/// ring_record(). A fault is reported, and the result is empty, if a point is outside of its part, if a point
-/// of the world moves, if the radius is tiny, or if both parts are rigid and the polygons differ.
+/// side `from` have the same offsets from their point X, transformed to the frame of the part of `from`. The
+/// transformation is setting.rotation, the orientation of `from` relative to `to`; when absent, the relative
+/// orientation at time 0. The points of both sides are therefore the corners of equal polygons, except that
+/// points of a shell are moved to its surface. r: an object of ring_record(). A fault is reported, and the
+/// result is empty, if a point is outside of its part, if a point of the world moves, if the radius is tiny,
+/// or if both parts are rigid and the polygons differ.
 std::vector<JointSetting> ring_of_joints(const Reader& r, const JointSetting& setting, SceneFaults& faults);
 
 }  // namespace pliant

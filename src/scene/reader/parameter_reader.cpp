@@ -52,7 +52,7 @@ ParameterReader::Entry ParameterReader::entry(const std::string& name, const Jso
 void ParameterReader::unknown(const JsonValue& parameters, const std::string& name) {
   const Parameters& known = part_.parameters();
   std::vector<std::string> names;
-  std::string longer;  // the name with its deformation, taper.tx for tx
+  std::string longer;  // the name with its deformation, for example taper.tx for tx
   for (int i = 0; i < known.size(); ++i) {
     names.push_back(known[i].name);
     const std::size_t dot = known[i].name.find('.');

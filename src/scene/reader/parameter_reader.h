@@ -15,8 +15,8 @@ namespace pliant {
 
 class ParameterReader {
  public:
-  /// in_matrix: the parameters of the part's stiffness matrix, which makes them dynamic. end: end of the run,
-  /// s.
+  /// in_matrix: the parameters in the stiffness matrix of the part; these parameters are dynamic. end: end of
+  /// the run, s.
   ParameterReader(Part& part, const std::vector<std::string>& in_matrix, double end, SceneFaults& faults)
       : part_(part), in_matrix_(in_matrix), times_(end, faults), faults_(faults) {}
 

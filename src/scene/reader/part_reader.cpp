@@ -132,7 +132,7 @@ void PartReader::read_local_factor(const Reader& local) {
   part_->scale_local(*factor);
 }
 
-/// Reads the elasticity of the part, or of its material if the part has none.
+/// Reads the key "elasticity" of the part, or of its material if the part has no such key.
 void PartReader::read_elasticity() {
   const Reader* from = r_.given("elasticity") ? &r_ : nullptr;
   if (from == nullptr && r_.given("material")) {
@@ -293,7 +293,8 @@ void PartReader::check_rigid_keys() {
                                                   : "it has no effect, because the part is fixed");
 }
 
-/// Reports a fault of all parameters together: too many dynamic parameters, a shape that folds.
+/// Reports a fault that concerns all parameters together, for example too many dynamic parameters or a shape
+/// that folds.
 void PartReader::report_at_parameters(const std::invalid_argument& e) {
   faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), without_name(e));
 }

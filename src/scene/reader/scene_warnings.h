@@ -1,4 +1,4 @@
-// Warnings about scenes that are valid, but probably not meant.
+// Warnings about settings that are valid, but probably not intended.
 #pragma once
 
 #include <pliant/scene/reader/reader.h>

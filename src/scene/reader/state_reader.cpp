@@ -35,7 +35,7 @@ std::optional<StateVector> StateReader::vector(const Reader& r, const char* key)
   }
   StateVector vector;
   bool good = r.given(key);
-  for (std::size_t i = 0; i < 3; ++i) {  // check the sound components even if another one is faulty
+  for (std::size_t i = 0; i < 3; ++i) {  // check all components, even if one of them is faulty
     const JsonValue& component = value->array()[i];
     const std::optional<StateFunction> function =
         r.is_faulty(component) ? std::nullopt : this->function(component);

@@ -16,7 +16,7 @@ std::optional<TimeVector> TimeReader::vector(const Reader& r, const char* key, N
   const JsonValue* value = r.json().find(key);
   const bool by_component = value != nullptr && value->is_array() && value->array().size() == 3;
   bool good = r.given(key);
-  if (by_component) {  // check the sound components even if another one is faulty
+  if (by_component) {  // check all components, even if one of them is faulty
     for (const JsonValue& component : value->array())
       good = !r.is_faulty(component) && function(component, needs) && good;
   }

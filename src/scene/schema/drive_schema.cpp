@@ -28,8 +28,8 @@ Record drive_of(std::string name, const std::string& what, Field target, Field r
   return {
       std::move(name),
       "A spring, servo or motor on " + what +
-          ": force = stiffness (target - x) + damping (rate - rate of x) + force. With constants only, its "
-          "energy is that of a spring; otherwise the ledger has its work as actuation.",
+          ": force = stiffness (target - x) + damping (rate - rate of x) + force. With constants only, the "
+          "drive has the energy of a spring; otherwise the ledger counts its work as actuation.",
       {std::move(target), std::move(rate), std::move(stiffness),
        optional("damping", state_function(units.damping, at_least(0)), "Damping.", "0"),
        optional("force", state_function(units.force, unbounded()), "Force in addition.", "0"),
@@ -59,8 +59,8 @@ Record parameter_drive_record() {
   return drive_of("parameter_drive", "a parameter x", target_of(units),
                   optional("rate", state_function(units.rate, unbounded()), kRateText),
                   optional("stiffness", state_function(units.stiffness, unbounded()),
-                           "Stiffness, in addition to that of the parameter. A negative one makes the "
-                           "parameter softer; a negative sum makes it unstable.",
+                           "Stiffness, in addition to the stiffness of the parameter. A negative value makes "
+                           "the parameter softer; a negative sum makes the parameter unstable.",
                            "0"),
                   units);
 }
@@ -70,8 +70,8 @@ Record ball_drive_record() {
   return drive_of("ball_drive", "the rotation of a ball joint (twist, swing_y, swing_z)",
                   optional("target", state_vector("rad"), "Target of twist and swing.", "[0, 0, 0]"),
                   optional("rate", state_vector("rad/s"),
-                           "Target of its rate; when absent, the rate of a target that is a function of t, "
-                           "otherwise 0."),
+                           "Target of the rates of twist and swing; when absent, the rate of a target that "
+                           "is a function of t, otherwise 0."),
                   stiffness_of(units), units);
 }
 

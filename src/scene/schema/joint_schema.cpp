@@ -35,16 +35,17 @@ void add_limits(const std::string& type, const Type& orientation, Record& record
         "are zero. When absent, the relative orientation at time 0, with undeformed parts."));
   }
   record.fields.push_back(optional("restitution", number(between(0, 1), "1"),
-                                   "Share of the rate that a limit reverses. A slow rate does not rebound.",
+                                   "Ratio of the rate after an impact on a limit to the rate before the "
+                                   "impact. A slow rate does not rebound.",
                                    "0"));
 }
 
 Record ring_record() {
   return {
       "ring",
-      "A ring of points in place of one: the joint becomes `count` ball joints NAME.1, NAME.2, ... on equal "
-      "circles around the points of both sides. Two points are a hinge, three or more hold the relative "
-      "orientation.",
+      "A ring of points in place of one point: the joint becomes `count` ball joints NAME.1, NAME.2, ... on "
+      "equal circles around the points of both sides. Two points act as a hinge, three or more fix the "
+      "relative orientation.",
       {required("count", integer(between(2, 1000)), "Number of points.", "3"),
        required("radius", number(above(0), "m"),
                 "Radius of the circles. Their points are inside the parts, or on the surface of a shell.",
@@ -100,7 +101,8 @@ Type joint_type(const Type& end_point, const Type& orientation) {
     if (info.name == std::string(Ball::name))
       record.fields.push_back(optional(
           "ring", schema::record(ring_record()),
-          "Several points around the given ones. \"rotation\" is then the orientation that they hold."));
+          "Several points around the given ones. \"rotation\" is then the relative orientation that they "
+          "fix."));
     record.fields.push_back(
         optional("on", number(at_least(0), "s"), "Time at which the joint begins to act.", "0"));
     record.fields.push_back(

@@ -44,8 +44,8 @@ schema::Record local_record() {
   for (const LocalLawInfo& info : all_local_laws()) laws.push_back(law_record(info, info.meaning));
   const Record dent{
       "dent",
-      "An initial displacement and velocity of the nodes around a centre: at distance r, those of the centre "
-      "times exp(-(r / radius)^2).",
+      "An initial displacement and velocity of the nodes around a centre: at distance r, the values at the "
+      "centre times exp(-(r / radius)^2).",
       {required("at", vector3("m"), "Centre, body frame at rest.", "[0, 0, 1]"),
        required("radius", number(above(0), "m"), "Radius of the dent.", "0.2"),
        optional("displacement", vector3("m"), "Displacement of the centre, body frame.", "[0, 0, 0]"),

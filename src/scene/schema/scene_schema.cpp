@@ -141,7 +141,7 @@ Record part_record() {
                 "parameters then begin with taper, taper2, ...",
                 "[]"),
        optional("parameters", map(parameter_type()),
-                "Global parameters by name: a1 is one of the shape, taper.tx one of a deformation. See "
+                "Global parameters by name, for example a1 of the shape or taper.tx of a deformation. See "
                 "`pliant list`.",
                 "{}"),
        optional("stiffness_matrix", record(stiffness_matrix_record()),
@@ -203,7 +203,8 @@ Record time_record() {
                 "is 1e-6 with the integrator \"auto\"; with the others all steps have the length \"step\"."),
        optional(
            "stop_rate", number(at_least(0), "1/s"),
-           "No step crosses a multiple of 1 / stop_rate. The viewer writes it in the scenes that it saves.",
+           "No step crosses a multiple of 1 / stop_rate. The viewer writes this key in the scenes that it "
+           "saves.",
            "0"),
        optional("solver",
                 choice({{"auto", "chosen for each island of parts by a fixed cost model"},
@@ -323,7 +324,8 @@ Record output_record() {
        optional(
            "contacts", boolean(),
            "Whether contacts.csv and joint_impulses.csv are written. They list the contacts of the last step "
-           "before each recorded state with their impulses, and the joint impulses that balance these.",
+           "before each recorded state with their impulses, and the joint impulses that balance the contact "
+           "impulses.",
            "false")}};
 }
 

@@ -79,7 +79,7 @@ bool accepts_objects(const Type& type) {
 }
 
 /// Returns how well a type fits the keys of an object: 1000 for each key that the type requires (or its tag),
-/// 1 for each optional key. For several alternatives, returns the best fit.
+/// 1 for each optional key. For a type with several alternatives, returns the best fit of an alternative.
 int weight(const Type& type, const JsonValue& object) {
   if (type.kind == Type::Kind::kTagged) return object.find(type.tag) != nullptr ? 1000 : 0;
   if (type.kind == Type::Kind::kRecord) {

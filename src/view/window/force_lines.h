@@ -11,10 +11,10 @@ class ForceLines {
   const ShownForces& shown() const { return shown_; }
   /// Shows all kinds, or none.
   void toggle();
-  /// Adds the settings to the panel of the window. Returns whether the user has changed one.
+  /// Adds the settings to the panel of the window. Returns whether the user has changed a setting.
   bool add_to_panel();
   /// Adds a line for each force of the kinds that are shown, with a dot at its point. The line of the
-  /// largest force so far has a quarter of the size of the scene. size: of the scene, m.
+  /// largest force so far has a quarter of the size of the scene. size: size of the scene, m.
   void add(const ForceArrows& arrows, double size, Picture& picture);
 
  private:

@@ -20,7 +20,7 @@ namespace {
 const Eigen::Vector3f kDragColor(0.85f, 0.15f, 0.1f);
 constexpr float kDragWidth = 2.5f, kTargetWidth = 8;  // pixels
 constexpr float kSliderWidth = 130;                   // pixels
-constexpr double kFarther = 1.5;           // distance of the automatic camera, in distances that show time 0
+constexpr double kFarther = 1.5;           // distance of the automatic camera / distance that fits time 0
 constexpr double kTrackResolution = 1e-3;  // distance between two points of a track, in sizes of the scene
 
 /// Returns the number of threads for the simulation: one processor is left to the window.
@@ -30,8 +30,8 @@ int threads_of(Scene& scene, int asked) {
   return std::clamp(automatic_threads(scene), 1, std::max(1, spare));
 }
 
-/// Adds a slider below its label. The label may be longer than the panel; the mouse over it shows it in full.
-/// Returns whether the user moved the slider.
+/// Adds a slider below its label. The label may be longer than the panel; a tooltip then shows the whole
+/// label. Returns whether the user moved the slider.
 bool add_slider(const std::string& label, float& value, float low, float high, const char* format,
                 ImGuiSliderFlags flags = 0) {
   ImGui::TextUnformatted(label.c_str());
@@ -207,8 +207,9 @@ void LiveMotion::add_to_panel(const std::string& selected) {
   ImGui::Text("balance %.2g J", ledger.balance);
 }
 
-/// Adds a slider for each rest value of a part: of a positive parameter from 0.3 to 2 times its first value,
-/// of others from -2 to 2 times this value, or from -1 to 1 if it is zero.
+/// Adds a slider for each rest value of a part. The slider of a positive parameter goes from 0.3 to 2 times
+/// its first value, the slider of another parameter from -2 to 2 times this value, or from -1 to 1 if this
+/// value is zero.
 void LiveMotion::add_rest_values(const std::string& part) {
   for (std::size_t i = 0; i < rest_values_.size(); ++i) {
     RestValue& rest = rest_values_[i];
@@ -225,7 +226,7 @@ void LiveMotion::add_rest_values(const std::string& part) {
 }
 
 /// Adds a slider for the stiffness of each parameter of a part, from a hundredth of its first value, or the
-/// smallest value that is allowed, to the largest one with stable steps.
+/// smallest value that is allowed, to the largest stiffness with stable steps.
 void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
   for (std::size_t i = 0; i < parameter_stiffnesses_.size(); ++i) {
     ParameterStiffness& stiffness = parameter_stiffnesses_[i];
@@ -245,7 +246,7 @@ void LiveMotion::add_parameter_stiffnesses(const std::string& part) {
 }
 
 /// Adds a slider for the stiffness of each drive of a parameter of a part, from a tenth of its first value to
-/// the largest one with stable steps.
+/// the largest stiffness with stable steps.
 void LiveMotion::add_drive_stiffnesses(const std::string& part) {
   for (std::size_t i = 0; i < drive_stiffnesses_.size(); ++i) {
     DriveStiffness& stiffness = drive_stiffnesses_[i];
@@ -279,7 +280,7 @@ void LiveMotion::add_local_stiffnesses(const std::string& part) {
 }
 
 /// Adds a slider for the stiffness of each spring at a part, from a tenth of its first value to the largest
-/// one with stable steps.
+/// stiffness with stable steps.
 void LiveMotion::add_stiffnesses(const std::string& part) {
   const auto is_at = [&](const Point& end) { return end.part != nullptr && end.part->name() == part; };
   for (std::size_t i = 0; i < stiffnesses_.size(); ++i) {

@@ -51,17 +51,17 @@ class LiveMotion final : public Motion {
   std::vector<ParameterStiffness> parameter_stiffnesses_;
   std::vector<DriveStiffness> drive_stiffnesses_;
   std::vector<LocalStiffness> local_stiffnesses_;
-  Model model_;  // of the picture; the simulation has its own, which changes with every drag
+  Model model_;  // of the picture; the simulation has a separate model, which changes with every drag
   SurfacePoints points_;
   StatePicture shown_;
   std::vector<TrackLine> tracks_;
   double track_time_ = -1;  // of the last point of the tracks, s
   std::shared_ptr<const Snapshot> snapshot_;
   bool plays_ = false, fast_ = false, adds_gravity_;
-  Vec3<double> first_gravity_;            // m/s^2; 0 if the user's gravity is added to that of the scene
+  Vec3<double> first_gravity_;            // m/s^2; 0 if the user's gravity is added to the scene's gravity
   float drag_strength_ = 0, gravity_[3];  // logarithm to base 10 of the factor of the stiffness; m/s^2
   ForceLines forces_;
-  double highest_ = 0, size_ = 1;  // of the strain so far; of the scene at time 0, m
+  double highest_ = 0, size_ = 1;  // largest value of the coloring so far; size of the scene at time 0, m
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// What a window shows: a running simulation, or a recording.
+// The interface of the motion that a window shows: a running simulation, or a recording.
 #pragma once
 
 #include <iosfwd>
@@ -14,9 +14,9 @@ class Motion {
  public:
   virtual ~Motion() = default;
 
-  /// Takes over the newest state. Returns whether the picture has changed since the last call.
+  /// Fetches the newest state. Returns whether the picture has changed since the last call.
   virtual bool refresh() = 0;
-  /// Makes the picture of the state again, after a setting of it has changed.
+  /// Makes the picture of the state again, after a setting of the picture has changed.
   virtual void show_again() = 0;
   /// The picture of the state with its meshes. The window changes its camera.
   virtual StatePicture& shown() = 0;
@@ -27,7 +27,7 @@ class Motion {
   virtual double delay() const = 0;
   virtual bool plays() const = 0;
   virtual void play(bool on) = 0;
-  /// Pauses and goes one interval, or one frame, forwards.
+  /// Pauses and advances by one interval, or by one frame of a recording.
   virtual void step() = 0;
   /// Pauses and returns to the start.
   virtual void reset() = 0;
@@ -36,7 +36,8 @@ class Motion {
   /// Shows all kinds of forces, or none.
   virtual void toggle_forces() = 0;
 
-  /// Begins to drag the point of a hit. Returns the name of its part, or nothing if it cannot be dragged.
+  /// Begins to drag the point of a hit. Returns the name of its part, or nothing if the point cannot be
+  /// dragged.
   virtual std::optional<std::string> grab(const Hit& hit) = 0;
   virtual void drag_to(const Vec3<double>& position) = 0;
   virtual void release() = 0;
@@ -47,7 +48,8 @@ class Motion {
   /// Adds the controls and values of this kind of motion to the panel of the window. selected: the name of
   /// the part that was clicked last.
   virtual void add_to_panel(const std::string& selected) = 0;
-  /// Prints the state of a drag, and the simulated time divided by wall time, for scripts and benches.
+  /// Prints the time and, for a simulation, the speed (simulated time / wall time) and the state of a drag,
+  /// for scripts and benches.
   virtual void report(std::ostream& out) const = 0;
 };
 

@@ -49,7 +49,7 @@ class RecordedMotion final : public Motion {
   const Recording* recording_;
   std::unique_ptr<Film> film_;
   Dynamics dynamics_;
-  std::optional<RecordedContacts> contacts_;  // not set if the run has not recorded them
+  std::optional<RecordedContacts> contacts_;  // not set if the run has not recorded contacts
   ForceLines forces_;
   std::int64_t forces_row_ = -1;  // recorded state of arrows_; -1: none
   ForceArrows arrows_;

@@ -53,7 +53,7 @@ bool Script::perform(Viewer& viewer, std::ostream& out) {
   return false;
 }
 
-/// Performs one line. Returns whether it waits.
+/// Performs one line. Returns whether the line waits for pictures.
 bool Script::perform_line(const std::string& line, Viewer& viewer, std::ostream& out) {
   std::istringstream words(line);
   std::string word, name;

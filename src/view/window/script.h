@@ -17,8 +17,8 @@ class Script {
   explicit Script(const std::filesystem::path& file);
 
   /// Performs lines up to the next line that waits for pictures. The window calls this function before each
-  /// picture. Returns false at the end of the file. out: for the lines that report. Throws
-  /// std::invalid_argument that names a line that is not known.
+  /// picture. Returns false at the end of the file. out: output of `report` and `part`. Throws
+  /// std::invalid_argument, which names the line, for an unknown line.
   bool perform(Viewer& viewer, std::ostream& out);
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 /// Wall time without a change after which a picture of full quality is drawn, s.
 constexpr double kStill = 0.25;
-constexpr double kZoom = 1.15;  // of one notch of the wheel
+constexpr double kZoom = 1.15;  // factor of one notch of the wheel
 
 }  // namespace
 

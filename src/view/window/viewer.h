@@ -1,4 +1,4 @@
-// The inputs of a window, and the pictures that they lead to. GLFW and scripts call the same functions.
+// The inputs of a window, and the pictures that follow from them. GLFW and scripts call the same functions.
 #pragma once
 
 #include <memory>
@@ -32,11 +32,12 @@ class Viewer {
   void key_pressed(const std::string& key);
   void resized(int width, int height);
 
-  /// Draws the motion if it, the camera or a setting has changed, else the last picture again. Returns
-  /// whether the picture is new. The panel is drawn after it.
+  /// Draws a new picture if the motion, the camera or a setting has changed, else shows the last picture
+  /// again. Returns whether the picture is new. The panel is drawn after the picture.
   bool draw();
   void add_panel();
-  /// Counts the wall time of the last new picture and its panel (s), which sets the quality of the next.
+  /// Counts the wall time of the last new picture and its panel (s), which determines the quality of later
+  /// pictures.
   void add_picture_time(double seconds);
   /// Whether the next call of draw() can wait for an input.
   bool is_idle() const;

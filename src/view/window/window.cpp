@@ -75,7 +75,7 @@ std::optional<MouseButton> button_of(int button) {
   return {};
 }
 
-/// Connects the inputs of a window with a viewer. Inputs on the panel belong to the panel.
+/// Connects the inputs of a window with a viewer. Inputs on the panel do not reach the viewer.
 void connect(GLFWwindow* window, Viewer& viewer) {
   glfwSetWindowUserPointer(window, &viewer);
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
@@ -110,7 +110,7 @@ void connect(GLFWwindow* window, Viewer& viewer) {
   viewer.resized(wide, high);
 }
 
-/// Dear ImGui with its renderer. Its callbacks also call those that connect() has set.
+/// Dear ImGui with its renderer. Its callbacks also call the callbacks that connect() has set.
 class Panel {
  public:
   explicit Panel(GLFWwindow* window) {

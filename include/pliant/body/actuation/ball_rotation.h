@@ -16,7 +16,7 @@ namespace pliant {
 /// Returns (x, y), where atan2(y, x) is the twist of the frame a relative to the frame b.
 template <class T>
 Vec<T, 2> twist_direction(const Framed<T>& a, const Framed<T>& b) {
-  constexpr double least = 1e-12;  // of 1 + cos theta, near a swing of pi
+  constexpr double least = 1e-12;  // smallest value of 1 + cos theta, for swings near pi
   const Vec3<T> a_1 = b.axes.transpose() * a.axes.col(0), a_2 = b.axes.transpose() * a.axes.col(1);
   const T sum = T(1.0) + a_1[0], k = a_2[0] / (plain(sum) < least ? T(least) : sum);
   return {T(a_2[1] - k * a_1[1]), T(a_2[2] - k * a_1[2])};

@@ -1,11 +1,12 @@
-// Limits of the coordinates of joints: one-sided rows C >= 0. When a limit stops a motion, the share
-// `restitution` of the rate is reversed.
+// Limits of the coordinates of joints: one-sided rows C >= 0. When a limit stops a motion, C_dot becomes
+// -restitution C_dot.
 //   hinge   C = size (half - sign (x - middle)),   x: the angle
 //   slider  C = half - sign (x - middle),          x: the position
 //   ball    C = size (max^2 - theta^2) / (2 max),  theta: the angle between the axes a_1 and b_1 (swing)
 //   ball    C = size (half - sign (x - middle)),   x: the twist (ball_rotation.h)
-// The range of x is [middle - half, middle + half]; sign is 1 for its upper and -1 for its lower end. For
-// angles, x - middle is in (-pi, pi], so the range is at most one turn.
+// The range of x is [middle - half, middle + half]; sign is 1 for the upper end of the range and -1 for the
+// lower end. For angles, x - middle is in (-pi, pi], so the range is at most one turn. max is
+// LimitRange::half.
 #pragma once
 
 #include <cmath>
@@ -55,7 +56,7 @@ struct SliderLimit : LimitFormula {
   }
 };
 
-struct SwingLimit : LimitFormula {  // half: the largest swing
+struct SwingLimit : LimitFormula {  // half: the largest swing, rad
   static constexpr const char* name = "swing limit";
   static constexpr const char* formula = "size (max^2 - swing^2) / (2 max) >= 0";
 

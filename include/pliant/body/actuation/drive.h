@@ -1,7 +1,8 @@
 // Drives: springs, dampers, servos and motors that act on a coordinate of a joint or on a parameter of a
 // part.
 //   F = k (target - x) + c (target_rate - x_dot) + force,   |F| <= max_force
-// Here x is the coordinate. For an angle, target - x is taken in [-pi, pi].
+// Here x is the coordinate. For an angle, multiples of 2 pi are removed from target - x, so that it is in
+// [-pi, pi].
 #pragma once
 
 #include <limits>
@@ -17,15 +18,16 @@ struct Drive {
   Signal on;             ///< the coordinate x: of kind coordinate or parameter
   bool angle = false;    ///< whether x is an angle
   StateFunction target;  ///< m or rad
-  /// Target of the rate, per second; by default the rate of a target that is a function of time, else 0.
+  /// Target of the rate, m/s or rad/s. Default: the time derivative of `target` if `target` is a function of
+  /// time only, else 0.
   std::optional<StateFunction> target_rate;
   StateFunction stiffness;                                     ///< k, N/m or N m
   StateFunction damping;                                       ///< c, N s/m or N m s
   StateFunction force;                                         ///< N or N m
   double max_force = std::numeric_limits<double>::infinity();  ///< N or N m
 
-  /// Returns whether the force can differ from 0 at time t, s. It is 0 if stiffness, damping and force are
-  /// functions of time with the value 0 at t.
+  /// Returns whether the force can differ from 0 at time t, s. The force is 0 if stiffness, damping and
+  /// `force` are functions of time with the value 0 at t.
   bool may_exert_force(double t) const {
     const auto is_zero = [t](const StateFunction& x) {
       return !x.reads_state() && x.of_time().value(t) == 0;
@@ -33,8 +35,8 @@ struct Drive {
     return !(is_zero(stiffness) && is_zero(damping) && is_zero(force));
   }
 
-  /// Whether the drive is a spring and damper with constants. If it also acts at all times, its energy
-  /// k (x - target)^2 / 2 is in the ledger. Otherwise the ledger has the work of F as actuation.
+  /// Whether the drive is a spring and damper with constants. If such a drive acts at all times, the ledger
+  /// has its energy k (x - target)^2 / 2. Otherwise the ledger has the work of F as actuation.
   bool is_passive() const {
     return target.is_constant() && !target_rate && stiffness.is_constant() && damping.is_constant() &&
            force.is_constant() && force.constant() == 0 &&

@@ -4,7 +4,7 @@
 //           ball: twist, swing_y, swing_z, twist_rate, swing_y_rate, swing_z_rate
 //   spring  length, rate
 //   point   x, y, z, vx, vy, vz
-// A sensor and an input have no quantity: their name is the signal.
+// A sensor or an input has no quantities: its name alone denotes its value.
 #pragma once
 
 #include <map>
@@ -22,16 +22,16 @@ class MultiBody;
 using NamedPoints = std::map<std::string, Point>;
 
 /// Returns the signal of a quantity of an owner, or nothing if no object has the name `owner`. Adds the
-/// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner has no
-/// such quantity, or if two objects of this name, for example a part and a spring, both have the quantity.
+/// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner does
+/// not have the quantity, or if two objects of this name, for example a part and a spring, both have it.
 std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, const std::string& quantity,
                                    const NamedPoints& points = {});
 
 /// Returns the function of a formula of t and of named quantities, for example "-20 * ball.z". Throws
 /// FormulaError (math/formula.h) for an error in the text or an unknown name, and std::invalid_argument for
 /// more than kMaxSignals quantities. at_points: the names of quantities_at_points(), for formulas of
-/// distributed forces. Throws FormulaError if the formula reads one of these quantities, and a sensor or
-/// input has the same name.
+/// distributed forces. Throws FormulaError if the formula reads a quantity at points whose name is also the
+/// name of a sensor or input.
 StateFunction state_formula(MultiBody& body, const std::string& text, const NamedPoints& points = {},
                             const std::vector<std::string>& at_points = {});
 

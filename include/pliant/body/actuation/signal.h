@@ -14,16 +14,16 @@ struct Sensor;
 struct Signal {
   enum class Kind {
     position,          ///< of the origin of the body frame of `part`, component `index`, m
-    velocity,          ///< its rate, m/s
+    velocity,          ///< rate of the position, m/s
     angular_velocity,  ///< of `part`, component `index`, rad/s
     parameter,         ///< dynamic parameter `index` of `part`, in the order of q_s
-    parameter_rate,    ///< its rate, per second
+    parameter_rate,    ///< rate of the parameter, per second
     point,             ///< position of point a, component `index`, m
-    point_rate,        ///< its rate, m/s
-    distance,          ///< of the points a and b, m
-    distance_rate,     ///< its rate, m/s
+    point_rate,        ///< velocity of point a, component `index`, m/s
+    distance,          ///< distance of the points a and b, m
+    distance_rate,     ///< rate of the distance, m/s
     coordinate,        ///< row `index` of `coordinate`, rad or m
-    coordinate_rate,   ///< its rate, per second
+    coordinate_rate,   ///< rate of the row, per second
     sensor,            ///< the value of `sensor`
     input,             ///< input `index` of the state (State::inputs)
     at_point           ///< quantity `index` of quantities_at_points(), for distributed forces only

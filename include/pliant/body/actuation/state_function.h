@@ -22,8 +22,8 @@ class StateFunction {
  public:
   StateFunction(double constant = 0) : of_time_(constant) {}             // NOLINT
   StateFunction(TimeFunction of_time) : of_time_(std::move(of_time)) {}  // NOLINT
-  /// signals: the quantities of the formula, in the order of their numbers. Throws std::invalid_argument for
-  /// more than kMaxSignals of them.
+  /// signals: the quantities of the formula, in the order of their numbers in the formula (Formula::Names).
+  /// Throws std::invalid_argument for more than kMaxSignals signals.
   StateFunction(Formula formula, std::vector<Signal> signals);
 
   bool reads_state() const { return of_state_ != nullptr; }

@@ -9,7 +9,7 @@ namespace pliant {
 struct TwoFrames {
   static constexpr int first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool framed = true;
-  MaterialFrame from, to;
+  MaterialFrame from, to;  ///< the frames a and b
 };
 
 }  // namespace pliant

@@ -16,10 +16,10 @@ namespace pliant {
 
 namespace detail {
 
-/// Entry of d in a row, relative to diagonal_of_ends() of this row.
+/// Entry of the diagonal d (augmented.h) in a row, divided by diagonal_of_ends() of the row.
 inline constexpr double kRegularisation = 1e-9;
-/// A row of unit length counts as dependent on the rows before it if its distance from their span is below
-/// this number.
+/// A row of unit length is regarded as dependent on the rows before it if its distance from their span is
+/// below this number.
 inline constexpr double kDependentRow = 3e-5;
 /// Largest number of refinements, and number of successive refinements without improvement that ends the
 /// iteration.
@@ -95,7 +95,7 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
   const Eigen::Index n_v = island_->n_v, rows = island_->rows;
   VecX<double> b = VecX<double>::Zero(n_v + rows), z = b, left;
   b.tail(rows) = x;
-  if (!factored_ || !x.allFinite()) {  // the finite check of the step reports NaN
+  if (!factored_ || !x.allFinite()) {  // the check of the state after the step reports NaN
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
     return;
   }
@@ -107,7 +107,7 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
     more = left;
     factor_->solve(more);
     z += more;
-    // The residual of Eq. (14) itself, where d is zero.
+    // Compute the residual of Eq. (14), in which d is zero.
     left = b - K_.selfadjointView<Eigen::Lower>() * z;
     left.tail(rows) += K_.diagonal().tail(rows).cwiseProduct(z.tail(rows));
     const double now = left.tail(rows).lpNorm<Eigen::Infinity>();

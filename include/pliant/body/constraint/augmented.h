@@ -24,8 +24,8 @@ class AugmentedFactor {
  public:
   AugmentedFactor(const Model& model, const Island& island);
 
-  /// Factors the matrix for the joints in mode closing or closed (JointMode, body/state.h), or for the closed
-  /// ones only. `work` must contain C_q and M^-1 C_q^T of these joints.
+  /// Factors the matrix for the joints in mode closing or closed (JointMode, body/state.h). closed_only: for
+  /// the closed joints only. `work` must contain C_q and M^-1 C_q^T of these joints.
   void factor(const std::vector<PartWorkspace<double>>& parts, const ConstraintWorkspace<double>& work,
               bool closed_only);
   /// Replaces x by W_c^-1 x, or by NaN if the factorisation failed.

@@ -17,7 +17,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns Baumgarte's terms 2 alpha C_dot + beta^2 C of joint j; zero for a joint without them.
+/// Returns Baumgarte's terms 2 alpha C_dot + beta^2 C of joint j; zero if the joint has no such terms.
 template <class S>
 VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
   const JointModel& joint = model.joints()[at(j)];
@@ -96,7 +96,7 @@ void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, 
   }
 }
 
-/// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if it acts or is a slack string.
+/// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if the joint acts or is a slack string.
 /// Otherwise sets C_q^T to zero.
 template <class S>
 void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
@@ -179,8 +179,8 @@ void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>&
   }
 }
 
-/// Calls evaluate(i) for the parts i of an island in their order, each part before the first joint on it.
-/// Does nothing if `evaluate` is empty.
+/// Calls evaluate(i) for the parts i of an island in their order, each part before the first joint on the
+/// part. Does nothing if `evaluate` is empty.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const EvaluatePart& evaluate) : island_(island), evaluate_(evaluate) {
@@ -276,11 +276,11 @@ double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, 
 
 namespace detail {
 
-/// Rows that depend on each other look independent while their joints are open by a gap e: their relative
-/// pivots are then of the order (e / r)^2, where r is the distance from the point of one joint to that of the
-/// other. Returns a factor of at least 1 for the scales of the pivots of a closed joint (solve/pivots.h).
-/// With this factor, pivots up to (kOpenPivot e / length)^2 vanish. Joints that have just become closed have
-/// gaps e up to kJustClosed lengths; for larger gaps the factor is 1.
+/// Returns the factor, at least 1, by which the scales of the pivots (solve/pivots.h) of joint j are raised.
+/// Rows that depend on each other look independent while their joints have a gap e. The relative pivots of
+/// these rows are then of the order (e / r)^2, where r is the distance between the points of the two joints.
+/// With the factor, pivots up to (kOpenPivot e / length)^2 vanish. Joints that have just become closed have
+/// gaps e up to kJustClosed lengths; for larger gaps, and for joints that are not closed, the factor is 1.
 template <class S>
 double scale_of_open_rows(const JointModel& joint, const ConstraintWorkspace<S>& work, int j) {
   constexpr double kOpenPivot = 10, kJustClosed = 2e-3;
@@ -307,7 +307,7 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     return;
   }
   blocks_.clear(island.pattern, work.rank);
-  // Couplings are added joint by joint, while this joint and the joints that share parts with it are in the
+  // Couplings are added joint by joint, while the joint and the joints that share parts with it are in the
   // cache.
   auto coupling = island.couplings.begin();
   for (const int j : island.joints) {
@@ -399,7 +399,7 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!acts(joints.modes[j])) continue;
     const auto lambda = joints.lambda.segment(joint.row, joint.rows);
     const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
-    // If projection keeps a joint closed, lambda . C_dot is an error of the method, not the power of a work.
+    // If projection keeps a joint closed, C_dot is an error of the method, and lambda . C_dot is no work.
     if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
       power[static_cast<int>(Work::baumgarte)] += closing;
     if (!joint.driven) continue;

@@ -21,8 +21,8 @@ struct PartWorkspace;
 template <class S>
 struct Workspace;
 
-/// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or sign *
-/// C_q x >= bound for a string.
+/// A one-sided row of a group of parts (group.h): sign * x_i >= bound, where x_i is velocity 6 + k of a part,
+/// or sign * C_q x >= bound for a string. x: the velocities or accelerations of the group.
 struct OneSidedRow {
   int part;  ///< number of the part in the group; -1: the row of a string
   int k;     ///< number of a dynamic parameter of the part, or of a string of the island
@@ -39,8 +39,9 @@ struct OneSidedRow {
 template <class S>
 class JointFactor {
  public:
-  /// Factors W_c for the joints that act, or for the closed ones only. Calls prepare(j) for each joint j in
-  /// turn; prepare(j) computes C_q and M^-1 C_q^T of the joint in `work` unless they are there already.
+  /// Factors W_c for the joints that act; closed_only: for the closed joints only. Calls prepare(j) for each
+  /// joint j in turn. prepare(j) computes C_q and M^-1 C_q^T of the joint in `work`, unless `work` contains
+  /// them already.
   template <class F>
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
               const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
@@ -75,8 +76,8 @@ class JointFactor {
 template <class S, int Max>
 struct GroupVectors {
   VecMax<S, Max> before, joined,
-      x;  ///< accelerations or velocities: `before` the joints act, `joined` with joints, and x, which
-          ///< includes the pushes of one-sided rows
+      x;  ///< accelerations or velocities: without forces of joints, with these forces, and with these forces
+          ///< and the pushes of one-sided rows
   VecX<S> rows, lambda;        ///< rows C_q x of the joints, and their forces
   VecX<S> correction, change;  ///< lambda and change of x of the last Group::correct()
   VecMax<S, Max> start, gain;  ///< velocities at the evaluation of the joints, and their change since then
@@ -97,7 +98,7 @@ struct ConstraintWorkspace {
   VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
   std::vector<JointFactor<S>> W_c;   ///< for each island: the factor of the joints that act
   /// For each island with closing joints: the factor of the closed joints only. Impulses keep the closed
-  /// joints closed and may open the others.
+  /// joints closed and may open the closing joints.
   std::vector<JointFactor<S>> W_closed;
   VecX<S> lambda;                                ///< N, n_rows; the force on the parts is C_q^T lambda
   std::vector<std::vector<OneSidedRow>> pushed;  ///< of each island: the one-sided rows with a push > 0
@@ -134,8 +135,8 @@ template <class S>
 double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
 
 /// Solves for lambda and adds M^-1 C_q^T lambda to the accelerations a_r of the parts, Eq. (14). The
-/// candidates for one-sided pushes are the strings that act and the rows `limits`. Stores in
-/// work.joints.pushed which of them push.
+/// candidates for one-sided pushes are the strings that act and the rows `limits`. Stores the candidates
+/// that push in work.joints.pushed.
 void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
                   Workspace<double>& work);
 /// Solves for the derivatives of lambda and of the accelerations, with pushes on the rows of
@@ -147,8 +148,8 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
 template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
 /// Returns |C_q a + wanted| of joint j for the accelerations a of an evaluation, m/s^2; for a one-sided joint
-/// max(0, -(C_q a + wanted)). The result is zero within rounding, unless rows of the joint depend on rows
-/// that contradict them, or the forces of closing joints are limited (kMaxClosingRatio, solve_joints-inl.h).
+/// max(0, -(C_q a + wanted)). The result is zero within rounding except in two cases: rows of the joint
+/// contradict other rows, or the forces of closing joints are limited (kMaxClosingRatio, solve_joints-inl.h).
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
 /// Returns the power of the joints for each kind of work (enum Work), W.

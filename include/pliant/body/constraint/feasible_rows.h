@@ -1,7 +1,7 @@
-// The rows b that closing joints request, W_c lambda = -b, if these joints depend on each other. Several
-// points that hold an orientation have more rows than there are motions: W_c has vectors n with W_c n = 0,
-// and accelerations exist only for rows b with n . b = 0. While such joints are open, Baumgarte's terms
-// violate this condition.
+// The rows b that closing joints request, W_c lambda = -b, if these joints depend on each other. For example,
+// three ball joints between two rigid parts have more rows than the parts have relative motions. Then there
+// are vectors n with W_c n = 0, and accelerations exist only for rows b with n . b = 0. While such joints are
+// open, Baumgarte's terms violate this condition.
 #pragma once
 
 #include <utility>
@@ -17,8 +17,9 @@ namespace pliant::detail {
 template <class S>
 class DependentRows {
  public:
-  /// Computes the vectors n. group: of all joints that act, after an evaluation and factorisation. If the
-  /// augmented matrix is factored, there are no vectors: its lower right block makes all rows feasible.
+  /// Computes the vectors n. group: the group of the island with all joints that act, after an evaluation and
+  /// factorisation. With the augmented matrix there are no vectors: its lower right block makes all rows
+  /// feasible.
   DependentRows(const Model& model, const Island& island, const Workspace<S>& work,
                 const Group<S, Eigen::Dynamic>& group) {
     const ConstraintWorkspace<S>& joints = work.joints;
@@ -68,7 +69,7 @@ class DependentRows {
   }
 
  private:
-  /// Entries of a vector n below this are rounding errors; its largest entry is at least 1.
+  /// Entries of a vector n below this number are rounding errors; the largest entry of n is at least 1.
   static constexpr double kNoise = 1e-6;
 
   static VecX<double> plain_values(const VecX<S>& of) {

@@ -1,7 +1,7 @@
 // A group: one part without joints, or the parts of an island. The velocities v_r = (R^T c_dot, omega,
-// q_s_dot) of its parts, one after the other, form one vector x. For a part that deforms locally, d_dot of
-// the points at its joints follows its v_r. Joints and one-sided rows (limits of parameters, strings) act on
-// x.
+// q_s_dot) of these parts, one part after the other, form one vector x. For a part that deforms locally,
+// d_dot of the points at its joints follows its v_r. Joints and one-sided rows (limits of parameters,
+// strings) act on x.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +25,8 @@ class Group {
   /// Makes the group of one part without joints.
   Group(const Model& model, Workspace<S>& work, int part)
       : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
-  /// Makes the group of an island. closed_only: pushes and corrections keep the closed joints closed, and may
-  /// open the joints that are still closing; otherwise they respect all joints that act.
+  /// Makes the group of an island. closed_only: whether only closed joints react to pushes and corrections,
+  /// so that joints that are still closing may open. If false, all joints that act react.
   Group(const Model& model, Workspace<S>& work, const Island& island, bool closed_only)
       : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
     closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
@@ -80,8 +80,8 @@ class Group {
   /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with W_c
   /// lambda = -rows. Returns lambda, which the next call overwrites. W_c may be the matrix of an earlier
   /// configuration. Then lambda is approximate, but the forces act along the present C_q^T, so that the two
-  /// ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace is still that of
-  /// the factorisation.
+  /// ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace has not changed
+  /// since the factorisation.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const;
 
  private:

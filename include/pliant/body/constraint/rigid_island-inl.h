@@ -89,8 +89,8 @@ PLIANT_INLINE bool RigidIsland::applies_to(const Model& model, const Island& isl
 
 PLIANT_INLINE RigidIsland::RigidIsland(const Model& model, const Island& island)
     : island_(static_cast<int>(&island - model.islands().data())) {
-  // Parts are sorted by their number of joints, so that the four parts of a pack have similar numbers of
-  // arms.
+  // Parts are sorted by their number of joints, so that four parts that are evaluated together have similar
+  // numbers of joints.
   std::vector<std::vector<int>> joints_of(island.parts.size());
   for (const int j : island.joints)
     for (const JointSide& side : model.joints()[at(j)].sides) joints_of[at(side.place)].push_back(j);
@@ -414,9 +414,10 @@ inline constexpr double kSlowClosing = 0.5;
 /// Number of iterations that cost as much as a new factor.
 inline constexpr int kIterationsPerFactor = 2;
 
-/// Iterates until the joints are closed. measure() returns the largest gap relative to the allowed one.
-/// correct(gap, ratio) does one iteration; ratio: this gap over the gap before (0 at first). Returns false if
-/// correct() returns false, if a gap is not finite, or after kMaxClosingIterations.
+/// Iterates until the joints are closed. measure() returns the largest gap divided by the allowed gap.
+/// correct(gap, ratio) does one iteration; ratio: this gap divided by the previous gap, 0 in the first
+/// iteration. Returns false if correct() returns false, if a gap is not finite, or after
+/// kMaxClosingIterations.
 template <class Measure, class Correct>
 bool iterate_closing(Measure&& measure, Correct&& correct) {
   double before = std::numeric_limits<double>::infinity();

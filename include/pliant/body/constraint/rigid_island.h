@@ -30,7 +30,8 @@ struct Workspace;
 
 /// The quantities of a rigid island at an evaluation.
 struct RigidWorkspace {
-  /// Four parts, one in each lane of a Pack. Lanes without a part repeat the last part.
+  /// Four parts, one in each lane of a Pack, a vector of four numbers (math/scalar/pack.h). Lanes without a
+  /// part repeat the last part.
   struct Four {
     Mat3<Pack> R;      ///< orientation, body to world
     Vec3<Pack> omega;  ///< angular velocity, rad/s, body frame
@@ -45,8 +46,8 @@ struct RigidWorkspace {
     Vec3<Pack> push;         ///< force of the joint, N, world
   };
   bool used = false;      ///< whether the last evaluation used the rigid island
-  bool prepared = false;  ///< whether the constants of its parts are in their workspaces
-  Counters counters;      ///< how often its kernels ran
+  bool prepared = false;  ///< whether the workspaces of the parts contain their constants
+  Counters counters;      ///< how often the kernels of the island ran
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts
@@ -87,7 +88,7 @@ class RigidIsland {
     double per_length, per_size, rate;
   };
   /// Projects coordinates and velocities onto C = 0 and C_dot = 0. Uses the factor of W_c of the last
-  /// evaluation, or a new factor if that saves iterations. Returns false, with q and v unchanged, if the
+  /// evaluation, or a new factor if it saves iterations. Returns false, with q and v unchanged, if the
   /// iteration converges slowly or is not finite.
   bool close(const Island& island, const Rounding& allowed, BlockFactor<double>& W_c, RigidWorkspace& now,
              VecX<double>& q, VecX<double>& v) const;
@@ -107,7 +108,7 @@ class RigidIsland {
   struct Four {
     std::array<int, Pack::kLanes> q0, v0;  ///< first entries of the parts in q and v
     int count;                             ///< number of parts
-    int first_arm, arms, first_pair;
+    int first_arm, arms, first_pair;  ///< first arm, number of arms; first pair in RigidWorkspace::mobility
     Pack inverse_mass;
     Mat3<Pack> inertia, L;  ///< inertia about the centre of mass, and L with inertia^-1 = L L^T
     Vec3<Pack> centre;      ///< centre of mass, m, body frame
@@ -119,8 +120,8 @@ class RigidIsland {
   struct BallJoint {
     std::array<End, 2> ends;  ///< C = x_0 - x_1
     Vec3<double> fixed;       ///< contribution of a fixed end to C, m
-    int row;
-    double length;  ///< JointModel::length, m
+    int row;                  ///< first row in the island
+    double length;            ///< JointModel::length, m
   };
   /// The contribution of two arms of a part to W_c: sign * mobility[pair] of a lane, or its transpose.
   struct Coupling {
@@ -129,7 +130,7 @@ class RigidIsland {
     double sign;
     int target;  ///< offset of the block
   };
-  /// A part with loads.
+  /// A part with loads: its number in the model, and its place in the Fours.
   struct Load {
     int part, four, lane;
   };

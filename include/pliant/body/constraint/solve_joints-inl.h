@@ -19,11 +19,11 @@ namespace pliant {
 namespace detail {
 
 /// Closing joints whose rows nearly contradict each other, for instance rods that pull apart, would
-/// accelerate their parts without bound. The accelerations are limited to this multiple of those that
-/// Baumgarte's terms require.
+/// accelerate their parts without bound. The accelerations are limited to this multiple of the largest
+/// acceleration that Baumgarte's terms request.
 inline constexpr double kMaxClosingRatio = 30;
-/// Softness (OneSidedRow) of the rows of closing strings if the accelerations exceed this limit. The strings
-/// then share the load.
+/// Softness (OneSidedRow) of the rows of closing strings if the accelerations exceed the limit
+/// kMaxClosingRatio. The strings then share the load.
 inline constexpr double kClosingSoftness = 1e-3;
 
 /// The forces of the joints of an island and the accelerations x of its parts. `before` contains the
@@ -45,8 +45,8 @@ class IslandForces {
   const Group<S, Eigen::Dynamic>& group() const { return group_; }
   const VecX<S>& x() const { return kept_.x; }
 
-  /// Computes lambda and x for the joints: the closed ones first, then the closing ones within the freedom
-  /// that remains.
+  /// Computes lambda and x for the joints: first for the closed joints, then for the closing joints in the
+  /// directions that remain free.
   void solve() {
     auto closing = [&](int j) { return joints_.modes[at(j)] == JointMode::closing; };
     auto not_closing = [&](int j) { return !closing(j); };
@@ -87,8 +87,8 @@ class IslandForces {
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
   /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the
-  /// forces to lambda: Eq. (14) after elimination of M. adapt: called with the rows that x has to remove
-  /// from C_q x; it may change them.
+  /// forces to lambda: Eq. (14) after elimination of M. adapt(rows) may change the rows, C_q x + wanted,
+  /// before the forces remove them.
   template <class Which, class Adapt>
   void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda,
                Adapt&& adapt) const {
@@ -169,7 +169,7 @@ class IslandForces {
   const Island& island_;
   Workspace<S>& work_;
   ConstraintWorkspace<S>& joints_;
-  Group<S, Eigen::Dynamic> group_, closed_;  ///< of all joints that act, and of the closed ones only
+  Group<S, Eigen::Dynamic> group_, closed_;  ///< with all joints that act, and with the closed joints only
   Vectors& kept_;
 };
 

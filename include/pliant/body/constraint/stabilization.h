@@ -1,7 +1,7 @@
 // Settings of the constraint stabilisation of section 4 of the paper: Baumgarte's equation
 //   C_ddot + 2 alpha C_dot + beta^2 C = 0
-// with a cap on the speed at which it closes a gap, and projection of coordinates and velocities after a
-// step. The terms themselves are in constraints-inl.h.
+// with a largest speed at which a gap closes, and projection of coordinates and velocities after a step.
+// constraints-inl.h computes Baumgarte's terms.
 #pragma once
 
 #include <cmath>
@@ -56,7 +56,7 @@ struct Stabilization {
   /// Returns the gains for a step of length h (s). consistent: as for follows_step().
   Gains gains(double h, bool consistent) const {
     if (rule == BaumgarteRule::free) return {stab_alpha, stab_beta};
-    // The gains of the rule critical are also the limit of those of step_consistent for h -> 0.
+    // For h -> 0, the gains of the rule step_consistent tend to the gains of the rule critical.
     if (!follows_step(consistent) || !(h > 0)) return {rate, rate};
     const double r = std::exp(-rate * h);
     return {(1 - r * r) / (2 * h), (1 - r) / h};

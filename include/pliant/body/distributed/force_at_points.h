@@ -65,9 +65,9 @@ class DensityAtPoints {
 };
 
 /// Calls act(port, force) with the forces (N, world) at the ports of a distributed force. A port may get
-/// several forces. In a body, the force at a port is that on its mass. On a surface, the force on a triangle
-/// is the density at its centre times its area, and each corner gets a third: an error of the second order in
-/// the size of the triangles.
+/// several forces. In a body, the force at a port is the force on the mass of the port. On a surface, the
+/// force on a triangle is the density at the centre of the triangle times its area, and each corner gets a
+/// third of this force. The error is of second order in the size of the triangles.
 template <class S, class Act>
 void for_each_force(const Evaluation<S>& e, const DistributedModel& m, Act&& act) {
   const PartWorkspace<S>& w = e.part_work(m.part);

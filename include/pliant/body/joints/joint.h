@@ -1,6 +1,6 @@
 // A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it connects. The formula of a joint
-// is one struct (body/joints/*.h), templated on its scalar. All other quantities are derived from the
-// formula:
+// is one struct (body/joints/*.h) with a template for the scalar type. All other quantities are derived from
+// the formula:
 //   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
 // Here L is the matrix of Eq. (9), x_dot = L v. bias is C_ddot for constant generalised velocities v: the
 // second derivative of C along a motion of the points with velocity x_dot and acceleration L_dot v. Points

@@ -92,9 +92,9 @@ inline void prepare_rigid_part(const Evaluation<double>& e, int i) {
   w.f.setZero(6);
 }
 
-/// Stages 1 to 3 of part i, and stage 5 if no load acts on it, one after the other while the part is in the
-/// cache. A part without coordinates has stage 1 only. Throws InvertedElement, with the name of the part, if
-/// an element of the part is inverted.
+/// Runs stages 1 to 3 of part i, and stage 5 if the part is not loaded, one after the other while the part is
+/// in the cache. A part without coordinates has stage 1 only. Throws InvertedElement, with the name of the
+/// part, if an element of the part is inverted.
 template <class S>
 void evaluate_part(const Evaluation<S>& e, int i) {
   const PartModel& m = e.part(i);
@@ -120,8 +120,8 @@ void evaluate_parts(const Evaluation<S>& e) {
   for (RigidWorkspace& rigid : e.work.rigid) rigid.prepared = rigid.prepared || rigid.used;
 }
 
-/// Stage 3 for loads: f_q = L^T f of all loads (stages/loads.h); then stage 5 of the parts on which loads act
-/// or whose state they read.
+/// Stage 3 for loads: f_q = L^T f of all loads (stages/loads.h). Then stage 5 of the loaded parts: loads act
+/// on these parts or read their state.
 template <class S>
 void evaluate_loads(const Evaluation<S>& e) {
   const std::vector<int>& loaded = e.model().loaded_parts();
@@ -169,7 +169,7 @@ void set_joint_modes(const Evaluation<S>& e) {
   joints.max_speed = rule.speed * rule.rate;
 }
 
-/// Copies modes, gains and active one-sided rows of the evaluation whose derivative is computed.
+/// Copies modes, gains and pushed one-sided rows of the evaluation whose derivative is computed.
 template <class S>
 void copy_joint_modes(const Evaluation<S>& e) {
   ConstraintWorkspace<S>& joints = e.work.joints;

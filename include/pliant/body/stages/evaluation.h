@@ -40,7 +40,7 @@ struct Evaluation {
   /// positions for loads, and the loads.
   bool uses_rigid(const PartModel& m) const { return uses_rigid(m.rigid_island); }
   /// Returns whether the parts of an island are evaluated together with its joints: each part before the
-  /// first joint on it, while part and joint are in the cache. This is impossible with loads, which need the
+  /// first joint on the part, while both are in the cache. This is impossible with loads, which need the
   /// positions of all parts first, and with threads, among which the parts are divided.
   bool with_joints(const Island& island) const {
     return dynamics.pool() == nullptr && !island.loaded && !uses_rigid(island);

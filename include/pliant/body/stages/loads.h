@@ -9,7 +9,7 @@
 
 namespace pliant::detail {
 
-/// Returns the force of a point force, N, world. at: position and velocity of its point.
+/// Returns the force of a point force, N, world. at: position and velocity of the point at which it acts.
 template <class S>
 Vec3<S> force_of(const Evaluation<S>& e, const ForceModel& f, const PortMotion<S>& at) {
   const PointForce& force = *f.force;
@@ -50,7 +50,7 @@ SpringForce<S> force_of(const Evaluation<S>& e, const SpringModel& s, const Port
           along * S(along.dot(d_dot) * damping)};
 }
 
-/// Returns the torque of a load, N m, in its frame.
+/// Returns the torque of a load, N m, in the frame Torque::frame.
 template <class S>
 Vec3<S> torque_of(const Evaluation<S>& e, const TorqueModel& m) {
   return vector_of(e, m.torque->torque, m.components);

@@ -56,8 +56,8 @@ std::optional<MovingFrame> place_frame(const PartModel& m, double t, const VecX<
   return prescribed;
 }
 
-/// Sets the factor of the laws of the local deformation of the named part. Throws NumericalFailure if the
-/// factor is negative or not a number.
+/// Sets the factor, and its rate, of all elastic laws of the local deformation of a part. name: the part, for
+/// the message. Throws NumericalFailure if the factor is negative or not finite.
 inline void set_law_factor(const std::string& name, double t, const Taylor2<double>& factor,
                            LocalWorkspace& work) {
   if (!(factor.v >= 0) || !std::isfinite(factor.v)) {
@@ -212,8 +212,8 @@ void add_elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
         part.continuum()->add_force(part, w.q_s, w.q_s_dot, part.beta(), w.f.tail(n), w.counters);
 }
 
-/// Returns the power of a gravity that changes in time at time t (s), -g_dot . m_x. m_x: mass times position
-/// of the centre of mass, kg m, world.
+/// Returns the power -g_dot . m_x, W, at time t (s) of a gravity g that changes in time. m_x: mass times
+/// position of the centre of mass, kg m, world.
 template <class S>
 S gravity_power(const TimeVector& gravity, double t, const Vec3<S>& m_x) {
   const Vec3<Taylor2<double>> g = gravity.at(t);
@@ -295,7 +295,7 @@ inline bool has_inertialess_velocity(const PartWorkspace<double>& w) {
 }
 
 /// Factors M of a part. M of a rigid part has a constant factor. M of a part that deforms locally is computed
-/// here, unless neither a joint nor a limit can push on the part.
+/// here if a joint or a limit can push on the part.
 inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // neither a joint nor a limit can push on the part
@@ -313,15 +313,15 @@ inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
-/// Factors M of part i and records in work.without_inertia whether it has a velocity without inertia.
+/// Factors M of part i and records in work.without_inertia whether the part has a velocity without inertia.
 inline void factor_part_mass(const Model& model, int i, Workspace<double>& work) {
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
   factor_mass(model.parts()[static_cast<std::size_t>(i)], w);
   work.without_inertia[static_cast<std::size_t>(i)] = has_inertialess_velocity(w) ? 1 : 0;
 }
 
-/// For a part that deforms locally, computes w.a_r, followed by the accelerations of d at its joints, and the
-/// second derivatives d_ddot of all its local coordinates.
+/// For a part that deforms locally, computes w.a_r and appends the accelerations of d at the part's joints to
+/// it. Also computes the second derivatives d_ddot of all local coordinates.
 inline void accelerate_local(const PartModel& m, PartWorkspace<double>& w, Eigen::Ref<VecX<double>> d_ddot) {
   m.local->accelerations(w.a_r, *w.local, d_ddot);
   if (!m.joint_points.empty()) {

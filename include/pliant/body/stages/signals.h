@@ -1,5 +1,5 @@
-// Stage 3, loads: the values of signals and of functions of time and state. The positions of the parts that
-// they read must be in the workspace.
+// Stage 3, loads: the values of signals and of functions of time and state. The workspace must contain the
+// positions of the parts whose state is read.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ PortMotion<S> motion_of(const Evaluation<S>& e, const PortRef& ref, const Point&
   return {Vec3<S>(S(x[0].v), S(x[1].v), S(x[2].v)), Vec3<S>(S(x[0].d), S(x[1].d), S(x[2].d))};
 }
 
-/// Marks the rows of all coordinates as unknown. To be called at the start of an evaluation.
+/// Marks the rows of all coordinates as unknown, at the start of an evaluation.
 template <class S>
 void forget_coordinates(const Evaluation<S>& e) {
   e.work.coordinates.resize(e.model().coordinates().size());
@@ -57,8 +57,8 @@ S value_of(const Evaluation<S>& e, const FunctionModel& f);
 inline bool acts_at(const Model& model, const DriveModel& m, double t) {
   return m.on.place < 0 || model.coordinates()[static_cast<std::size_t>(m.on.place)].coordinate->acts_at(t);
 }
-/// Returns whether a drive acts in an evaluation. The mode of its joint decides; this mode is constant in a
-/// step.
+/// Returns whether a drive acts in an evaluation. The result depends on the mode of its joint, which is
+/// constant in a step.
 template <class S>
 bool acts(const Evaluation<S>& e, const DriveModel& m) {
   if (m.on.place < 0) return true;
@@ -74,7 +74,8 @@ bool acts(const Evaluation<S>& e, const DriveModel& m) {
   return false;
 }
 
-/// Returns a difference of two values of the coordinate of a drive: for an angle, in [-pi, pi].
+/// Returns the difference of two values of the coordinate of a drive. For an angle, adds a multiple of 2 pi,
+/// so that the result is in [-pi, pi].
 template <class S>
 S coordinate_difference(const Drive& drive, const S& difference) {
   if (!drive.angle) return difference;
@@ -96,7 +97,7 @@ std::array<S, 2> distance_of(const Evaluation<S>& e, const SignalModel& m) {
   const PortMotion<S> a = motion_of(e, m.a, m.signal->a), b = motion_of(e, m.b, m.signal->b);
   const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
   const S length2 = d.dot(d);
-  if (plain(length2) == 0) return {S(0.0), S(0.0)};  // no direction
+  if (plain(length2) == 0) return {S(0.0), S(0.0)};  // d has no direction
   const S length = math::sqrt(length2);
   return {length, S(d.dot(d_dot)) / length};
 }

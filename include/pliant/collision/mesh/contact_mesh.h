@@ -33,7 +33,7 @@ class ContactMesh {
   /// Computes the vertices: one column for each, body frame, m. number: number of the part.
   Eigen::Matrix3Xd positions(const Model& model, const State& state, int number) const;
   /// Radius of a ball about the origin of the part's frame that contains the part, m. For a part without
-  /// nodes and with dynamic parameters it is estimated from few points.
+  /// nodes and with dynamic parameters the radius is estimated from few points.
   double reach(const Model& model, const State& state, int number) const;
   /// Whether reach() evaluates all vertices.
   bool reach_uses_all_vertices() const { return part_->local != nullptr; }
@@ -50,7 +50,7 @@ class ContactMesh {
   std::vector<Material<double>>
       coarse_;              // points for reach() of a part without nodes, with dynamic parameters
   Eigen::Matrix3Xd rigid_;  // vertices of a part of constant shape
-  double rigid_reach_ = 0;  // largest distance of such a vertex from the origin of the frame, m
+  double rigid_reach_ = 0;  // largest distance of a vertex in rigid_ from the origin of the frame, m
   // For a part without nodes and with dynamic parameters: the result of the last call of positions(), and q_s
   // of that call.
   mutable Eigen::Matrix3Xd last_;

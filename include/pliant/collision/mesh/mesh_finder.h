@@ -21,7 +21,7 @@ class MeshFinder {
   /// model, obstacles: must outlive this object.
   MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
-  /// Returns whether no part that deforms locally may touch anything.
+  /// Returns true if no part that deforms locally may touch anything.
   bool empty() const { return meshes_.empty(); }
   /// Appends the contacts of surfaces that overlap at a state and a time t (s).
   void find(const State& state, double t, std::vector<Contact>& found) const;
@@ -64,9 +64,10 @@ class MeshFinder {
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
   double local_travel(const State& state, double t, const BoundingBall& ball) const;
-  /// Whether one of two parts contains the centre of the other, or an overlap exceeds both a share of their
-  /// thickness and a multiple of their motion in the last step. touches: the overlaps of their meshes. The
-  /// function has seven parameters because the caller has computed the balls and the meshes already.
+  /// Whether two parts overlap deeply. This is so if one of them contains the centre of the other. It is also
+  /// so if an overlap exceeds a share of the thickness of the thinner part and a multiple of the motion of
+  /// the parts in the last step. touches: the overlaps of their meshes. The function has seven parameters
+  /// because the caller has computed the balls and the meshes already.
   bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
                        const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
   /// Returns one contact that separates two parts in deep overlap.
@@ -74,7 +75,8 @@ class MeshFinder {
                              const PlacedMesh& a, const PlacedMesh& b) const;
 
   const Model* model_;
-  std::map<int, ContactMesh> meshes_;  // mesh of each part that needs one
+  // Meshes of the parts that deform locally, and of the parts that may touch these, by number of the part.
+  std::map<int, ContactMesh> meshes_;
   std::vector<OnPlane> planes_;
   std::vector<OnObstacle> on_obstacles_;
   std::optional<ContactRules> rules_;  // only if a part deforms locally

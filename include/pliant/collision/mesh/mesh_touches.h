@@ -25,7 +25,7 @@ struct MeshPoint {
   Vec3<double> weight = Vec3<double>::UnitX();
 };
 
-/// An overlap of two meshes at a point of each.
+/// An overlap of two meshes a and b: a point of a, and a point of b.
 struct MeshTouch {
   MeshPoint a, b;
   Vec3<double> x;       ///< the overlapping vertex (of a or b), or the point on the edge of a, m, world
@@ -33,12 +33,12 @@ struct MeshTouch {
   double gap;           ///< m, negative
 };
 
-/// Appends the overlaps of two meshes. Their order is determined by the meshes alone.
+/// Appends the overlaps of two meshes. The order of the overlaps depends only on the meshes.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
 /// Appends the overlaps of a mesh a with an obstacle b. If a vertex of the mesh is behind the obstacle,
 /// MeshTouch::b is not set. Overlaps deeper than `deepest` (m) are ignored, because a vertex that deep may be
-/// on the far side of the mesh. A vertex of the mesh is not behind a triangle of the obstacle if the outward
-/// direction of the mesh at the vertex agrees with the normal of the triangle.
+/// on the far side of the mesh. A vertex of the mesh overlaps only with triangles whose normal opposes the
+/// outward direction of the mesh at the vertex (angle above 90 degrees).
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

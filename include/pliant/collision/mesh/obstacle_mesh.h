@@ -23,7 +23,7 @@ class ObstacleMesh {
   ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
 
   struct Edge {
-    std::array<int, 2> vertex;    ///< triangle[0] is on the left of the way from vertex[0] to vertex[1]
+    std::array<int, 2> vertex;    ///< triangle[0] is on the left of the line from vertex[0] to vertex[1]
     std::array<int, 2> triangle;  ///< the second one is -1 at the border of an open mesh
     bool sharp;  ///< whether a part outside both faces can touch it: a convex edge or the border
   };
@@ -47,8 +47,8 @@ class ObstacleMesh {
   /// Returns the edges that end in a vertex; empty if none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
   /// Whether a unit vector at an edge or a vertex is in the normal cone there: its angle with every direction
-  /// along a face that meets there is at least 90 degrees. At a border it must also not point behind the
-  /// face. `sine` is the tolerance, as the sine of an angle.
+  /// along a face at this edge or vertex is at least 90 degrees. At a border the vector must also not point
+  /// behind the face. `sine` is the tolerance, as the sine of an angle.
   bool points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const;
   bool points_outward(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether the mesh has no border.

@@ -13,15 +13,16 @@
 
 namespace pliant {
 
-/// A triangle is treated as one without area if its height is at most this share of its longest edge.
-/// Vertices in files are often in single precision.
+/// A triangle is treated as one without area if its height is at most this share of its longest edge. The
+/// share allows for files that store vertices in single precision.
 inline constexpr double kNoHeight = 1e-7;
 
 struct TriangleNeighbours {
   /// kBorder: the edge has no other triangle. kConflict: the triangles of the edge do not form pairs.
   static constexpr int kBorder = -1, kConflict = -2;
 
-  /// For each triangle the triangles behind its edges between corners 0 and 1, 1 and 2, 2 and 0.
+  /// Element t has the three triangles across the edges of triangle t: between its corners 0 and 1, 1 and 2,
+  /// 2 and 0.
   std::vector<std::array<int, 3>> across;
   int touching_edges = 0;  ///< number of edges with more than one pair
 

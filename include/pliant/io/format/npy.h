@@ -61,13 +61,13 @@ class NpyReader {
   NpyReader(NpyReader&& other) noexcept;
   NpyReader& operator=(NpyReader&&) = delete;
 
-  /// Returns the number of whole rows: that of the header, but at most the rows that the file contains.
+  /// Returns the number of whole rows: the number in the header, but at most the rows that the file contains.
   std::int64_t rows() const { return rows_; }
   /// Returns the number of columns, or kNpyVector.
   int columns() const { return columns_; }
   const std::filesystem::path& path() const { return path_; }
   /// Copies `count` rows from `row` on (0 <= row <= row + count <= rows()) to `numbers`, row after row.
-  /// Throws std::out_of_range if there are no such rows.
+  /// Throws std::out_of_range if one of these rows does not exist.
   void read(std::int64_t row, double* numbers, std::int64_t count = 1) const;
 
  private:

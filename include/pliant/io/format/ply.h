@@ -1,7 +1,7 @@
 // Binary PLY files of a frame. Each vertex has the colour and the index of its mesh, and one normal: the
 // normalised sum of the normals that its triangles have at this vertex. One normal per vertex keeps closed
 // meshes closed. Planes and open obstacles have each triangle twice, once for each side: there the sum is
-// zero, and the normal is that of the first triangle, on the front side.
+// zero, and the vertex gets the normal of its first triangle, which is on the front side.
 #pragma once
 
 #include <filesystem>

@@ -14,13 +14,13 @@ namespace pliant {
 /// Durable::no, writing is faster, and the file survives only a crash of the process.
 enum class Durable { no, yes };
 
-/// Waits until the names of the files in a folder are on the disk. Without this call, a replaced file may
-/// again be the old one after a power cut. Throws std::system_error.
+/// Waits until the names of the files in a folder are on the disk. Without this call, a power cut may bring
+/// back the old content of a replaced file. Throws std::system_error.
 void sync_folder(const std::filesystem::path& folder);
 
 /// A file that is written piece by piece. All members throw std::system_error with path and reason (for a
-/// full disk also the needed and free bytes). In this case the target is unchanged and the temporary file is
-/// removed.
+/// full disk also the needed and free bytes). If a member throws, the target is unchanged, and the destructor
+/// removes the temporary file.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path target);

@@ -1,6 +1,6 @@
 // Checkpoints: complete states between two recorded states, from which a killed run is resumed. A run writes
-// one of them from time to time. A folder has at most two; a new checkpoint replaces the older one, so that
-// one remains if the newest is damaged.
+// a checkpoint every RunOptions::checkpoint_every seconds. A folder has at most two checkpoints. A new
+// checkpoint replaces the older of them, so that one remains if the newest is damaged.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@ struct Checkpoint {
   RunWork work;  ///< of the run up to this state
 };
 
-/// Writes a checkpoint in place of the older of the two of a folder, so that it survives a power cut. Throws
-/// std::system_error.
+/// Writes a checkpoint in place of the older of the two checkpoints of a folder. The new checkpoint survives
+/// a power cut. Throws std::system_error.
 void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// A checkpoint that was found, and texts for the user about those that are damaged.
+/// A checkpoint that was found, and texts for the user about damaged checkpoints.
 struct FoundCheckpoint {
   std::optional<Checkpoint> checkpoint;
   std::string damage;

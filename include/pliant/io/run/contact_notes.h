@@ -14,8 +14,8 @@ namespace pliant {
 /// simulation; 0 without an overlap.
 double deepest_share(const Simulation& simulation);
 
-/// Overlaps above this depth, relative to the size of the smaller part, are reported by a note. Smaller ones
-/// appear only as "max_depth" in run.json.
+/// Overlaps above this depth, relative to the size of the smaller part, are reported by a note. Smaller
+/// overlaps appear only as "max_depth" in run.json.
 inline constexpr double kReportedOverlap = 1e-3;
 
 /// Indices that name both sides of a contact: the first part, then the second part, the plane and the
@@ -24,12 +24,12 @@ using TouchingPair = std::array<int, 4>;
 
 /// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation and are
 /// not yet in `reported`. A note gives the deepest contact of a pair and the name of a joint that may prevent
-/// the separation. If there are more than ten pairs, only the ten deepest are listed, with the number of the
-/// others. All these pairs are added to `reported`.
+/// the separation. If there are more than ten pairs, only the ten deepest pairs are listed, with the number
+/// of the remaining pairs. All these pairs are added to `reported`.
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
 
 /// Returns warnings about the largest residual and the largest overlap of a run, if they exceed the tolerance
-/// of contact. settings: those of the run.
+/// of contact. settings: contact settings of the run.
 std::vector<std::string> violation_notes(const StepCounters& counters, const ContactSettings& settings);
 /// Returns whether a note is one of violation_notes().
 bool is_violation_note(const std::string& note);

@@ -19,7 +19,7 @@ std::string open_joints_note(const Simulation& simulation);
 
 /// Returns notes on the impulses of simulation.engage_impulses() from index `first` on. For each time at
 /// which joints engage, a note gives the largest impulse. For each time at which the velocities of prescribed
-/// paths jump, a note gives the largest impulse, unless a note in `earlier` is about the path of its joint.
+/// paths jump, a note gives the largest impulse, unless a note in `earlier` reports the path of this joint.
 std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first,
                                       const std::vector<std::string>& earlier);
 

@@ -25,7 +25,7 @@
 
 namespace pliant {
 
-/// Wall time between two checkpoints, s, unless RunOptions gives another one.
+/// Wall time between two checkpoints, s, unless RunOptions gives another time.
 inline constexpr double kStandardCheckpointInterval = 30;
 
 struct RunOptions {
@@ -43,8 +43,8 @@ struct RunOptions {
   std::function<bool()> stop;
 };
 
-/// A run in its folder. It uses end, step, tolerance, frame rate, integrator and picture size of the scene,
-/// which may be changed before the run is constructed.
+/// A run in its folder. The run uses end, step, tolerance, frame rate, integrator and picture size of the
+/// scene. These settings may be changed before the run is constructed.
 class Run {
  public:
   /// Prepares the model. A new run then creates and locks the folder and records the first state; a resumed
@@ -86,7 +86,7 @@ class Run {
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
-  /// Writes the first state and the files of a new run into a new folder, and puts them in place together.
+  /// Writes the first state and the files of a new run into a new folder, and moves them into place together.
   void begin_recording(const StableStep& stable);
   void set_identity();
   void open_tables(std::int64_t states);
@@ -126,7 +126,7 @@ class Run {
   void fail(const std::string& message) noexcept;
   /// Shows a note to the user, and adds it to run.json unless run.json has it.
   void note(const std::string& text);
-  /// Does nothing if run.json has the note; otherwise as note().
+  /// Calls note() unless run.json already has the note.
   void note_once(const std::string& text);
   void note_redundancy();
   void note_engagements();
@@ -146,7 +146,7 @@ class Run {
   FrameSchedule schedule_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RecordingWriter> writer_;
-  std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene requests them
+  std::unique_ptr<ContactRecordingWriter> contacts_;  // nullptr unless the scene records contacts
   RunRecord record_;
   std::optional<EnergyMonitor> energies_;  // set by the constructor
   State last_recorded_;
@@ -169,8 +169,8 @@ class Run {
 /// Returns the steps and frames of a scene.
 FrameSchedule schedule_of(const Scene& scene);
 
-/// Returns the number of threads that the parts of a scene can use, at most that of the machine. Results do
-/// not depend on it. Prepares the parts, and throws what Part::prepare() throws.
+/// Returns the number of threads that the parts of a scene can use, at most the number of threads of the
+/// machine. Results do not depend on this number. Prepares the parts, and throws what Part::prepare() throws.
 int automatic_threads(Scene& scene);
 
 }  // namespace pliant

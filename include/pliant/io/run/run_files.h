@@ -18,7 +18,7 @@ inline constexpr const char* kModesFile = "modes.npy";  ///< entries of a state 
 inline constexpr const char* kWorkFile = "work.npy";    ///< the work of the run up to each state
 inline constexpr const char* kContactCacheFile =
     "supports.npy";  ///< the contact cache of a state: contacts for the warm start of the next step
-inline constexpr const char* kChecksumsFile = "checksums.npy";  ///< of the tables of states
+inline constexpr const char* kChecksumsFile = "checksums.npy";  ///< checksums of the tables of states
 /// Checkpoints: states between two recorded states. A new checkpoint replaces the older of the two.
 inline constexpr const char* kCheckpointFiles[] = {"checkpoint_1.npy", "checkpoint_2.npy"};
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
@@ -27,7 +27,8 @@ inline constexpr const char* kContactsFile = "contacts.npy";
 inline constexpr const char* kContactsTable = "contacts.csv";
 inline constexpr const char* kJointImpulsesFile = "joint_impulses.npy";
 inline constexpr const char* kJointImpulsesTable = "joint_impulses.csv";
-inline constexpr const char* kContactChecksumsFile = "contact_checksums.npy";  ///< of both tables
+/// Checksums of contacts.npy and joint_impulses.npy.
+inline constexpr const char* kContactChecksumsFile = "contact_checksums.npy";
 inline constexpr const char* kLockFile = "pliant.lock";  ///< exists while a run uses the folder
 inline constexpr const char* kMeshFolder = "meshes";
 inline constexpr const char* kFrameFolder = "frames";
@@ -49,8 +50,8 @@ std::string finished_name(const std::string& name);
 /// Returns the number of the process that writes the file with a temporary name; -1 for another name.
 int writing_process(const std::string& name);
 
-/// Returns whether a path relative to the folder of a run is that of a file, finished or not, that `pliant
-/// run`, `render` or `export` writes there.
+/// Returns whether `pliant run`, `render` or `export` writes a file, finished or not, with this path relative
+/// to the folder of a run.
 bool is_run_file(const std::filesystem::path& relative);
 
 }  // namespace pliant

@@ -29,9 +29,9 @@ enum class Existing {
 /// A run begins in one step. Its first files are written in new_run.part-PID-N inside the folder. When all
 /// these files are whole, this inner folder is renamed to new_run.whole: from now on the folder contains the
 /// new run. Then the files of the old run are removed, new_run.whole is renamed to new_run.moving, its files
-/// are moved to the folder of the run, and it is removed. If the process is killed in between, the next one
-/// that locks the folder completes these steps. If it is killed before new_run.whole exists, an old run is
-/// unchanged, and the next process removes the unfinished inner folder.
+/// are moved to the folder of the run, and new_run.moving is removed. If the process is killed during these
+/// steps, the next process that locks the folder completes them. If the process is killed before
+/// new_run.whole exists, an old run is unchanged, and the next process removes the unfinished inner folder.
 class RunFolder {
  public:
   /// Writes the options of a new run to a file.

@@ -85,7 +85,7 @@ struct RunRecord {
   void add_file(const std::string& name);
   /// Adds or replaces the checksum of a file.
   void set_checksum(const std::string& name, std::uint32_t checksum);
-  /// Returns the hash of the recorded motion: the CRC-32 of q.npy and that of v.npy, as 16 hexadecimal
+  /// Returns the hash of the recorded motion: the CRC-32 of q.npy and the CRC-32 of v.npy, as 16 hexadecimal
   /// digits.
   std::string trajectory_hash() const;
 };

@@ -1,4 +1,4 @@
-// Verification of the folder of a run: all files are there and as they were written.
+// Verification of the folder of a run: whether a file is missing or damaged.
 #pragma once
 
 #include <filesystem>
@@ -30,12 +30,12 @@ struct VerifiedRun {
 /// Compares the files of a run that have a checksum in run.json, except the tables, with this checksum.
 void verify_whole_files(const std::filesystem::path& folder, const RunRecord& record, Verification& result);
 
-/// Compares all numbers of the tables with their checksums, the checksums with those in run.json, and each
-/// state with its check number.
+/// Compares all numbers of the tables with their checksums, these checksums with the checksums in run.json,
+/// and each state with its check number.
 void verify_tables(const VerifiedRun& run, Verification& result);
 
-/// Checks that each frame exists for which run.json names files. A mesh file must have the bytes that the
-/// recording gives, and a picture must be undamaged. Throws Interrupted.
+/// If run.json lists mesh files or pictures, checks that the file of each frame exists. A mesh file must have
+/// the bytes that the recording gives, and a picture must be undamaged. Throws Interrupted.
 void verify_frames(const VerifiedRun& run, Progress& progress, Verification& result);
 
 }  // namespace pliant

@@ -18,7 +18,7 @@ namespace detail {
 
 /// Number of batches that one task of the thread pool evaluates.
 inline constexpr int kBendingRange = 256;
-/// Rest angles up to this value, rad, are rounding errors of a flat mesh.
+/// Rest angles up to this value, rad, are treated as rounding errors of a flat mesh.
 inline constexpr double kFlatHinge = 1e-12;
 
 /// Returns Q of a triangle (bending.h), N m. e: its edges, m.

@@ -1,8 +1,8 @@
 // Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
 // 2006). Each edge has a normal at its middle, which can rotate about the edge. phi (rad) is the angle from
 // the mean of the normals of both triangles to this normal. With LinearHinges the own coordinate of an edge
-// (nodal_energy.h) is phi. With FoldingHinges it is y = phi + g(dtheta), so that a fold can pass half a turn
-// (fold_turn.h); g = 0 for folds of up to a right angle.
+// (nodal_energy.h) is phi. With FoldingHinges the own coordinate is y = phi + g(dtheta), so that a fold can
+// pass half a turn (fold_turn.h); g = 0 for folds of up to a right angle.
 // Relative to the two triangles the normal has rotated since rest by
 //   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),
 // with dtheta the change of the angle between the triangles (hinge.h). The curvature of a triangle is
@@ -93,7 +93,8 @@ class MidEdgeBending final : public NodalEnergy {
   /// Computes g' at x and the changes of dtheta and phi along dx. Returns the changes of phi of all edges.
   const double* compute_rotation_changes(const Coordinates& x, const Coordinates& dx, const Scratch& to,
                                          ThreadPool* pool) const;
-  /// Computes phi of the hinges of a batch from their own coordinates.
+  /// Computes phi = y - g of the hinges of a batch, without half turns (remove_turns). turn: g; own: y of all
+  /// edges.
   void unwrap(int batch, const Pack& turn, const double* own, const Scratch& to) const;
   /// Computes the moments of all triangles from dtheta and phi. strain(batch) returns q of four triangles.
   template <class Strain>
@@ -136,7 +137,7 @@ class MidEdgeBending final : public NodalEnergy {
   Eigen::Index n_nodes_;
   Eigen::Matrix3Xi triangle_nodes_;
   std::vector<ShellEdge> edges_;
-  int n_hinges_ = 0;  ///< edges between two triangles; they come first in edges_
+  int n_hinges_ = 0;  ///< number of edges between two triangles, which come first in edges_
   ElementBatches<4> hinge_batches_;
   ElementBatches<3> triangle_batches_;
   bool curved_ = false;  ///< whether the rest shape is curved; C = 0 on a flat mesh

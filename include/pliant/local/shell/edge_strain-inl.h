@@ -35,8 +35,8 @@ PLIANT_INLINE Mat3<double> edge_stiffness(const Edges<double>& e, const Sheet& s
   Mat3<double> S;
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l) {
-      // B_k : B_l = [(t_i.t_m)(t_j.t_n) + (t_i.t_n)(t_j.t_m)]/(32 A^4), where i, j are the edges other than
-      // k, m, n the edges other than l, and t_i.t_m = e_i.e_m.
+      // B_k : B_l = [(t_i.t_m)(t_j.t_n) + (t_i.t_n)(t_j.t_m)]/(32 A^4), where i and j are the edges other
+      // than k, m and n are the edges other than l, and t_i.t_m = e_i.e_m.
       const double both = dot(k + 1, l + 1) * dot(k + 2, l + 2) + dot(k + 1, l + 2) * dot(k + 2, l + 1);
       S(k, l) = area * sheet.thickness *
                 (sheet.lambda() * trace[k] * trace[l] + sheet.mu() * both / (four_area2 * four_area2));

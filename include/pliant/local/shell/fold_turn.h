@@ -4,8 +4,8 @@
 // by 2 pi. Therefore phi jumps by pi, and g jumps by -pi, so that y is continuous:
 //   g = 0 for |dtheta| <= pi/2,  else g = sgn(dtheta) pi S(t),  t = (|dtheta| - pi/2)/pi,
 //   S = t^3 (10 - 15 t + 6 t^2),
-// so that g = +-pi/2 for dtheta = +-pi. g' and g'' are continuous, also at half a turn. y counts the half
-// turns of a fold: y/pi is near n after n turns.
+// so that g = +-pi/2 for dtheta = +-pi. g' and g'' are continuous, also at half a turn. y records the number
+// of turns of a fold: after n turns, y is near n pi.
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@ namespace pliant {
 template <class T>
 using HingeCorners = std::array<Vec3<T>, 4>;
 
-/// Returns the sine and cosine of theta, both times |n| |m|.
+/// Returns the sine and cosine of theta, both multiplied by |n| |m|.
 template <class T>
 math::SinCos<T> hinge_sin_cos(const HingeCorners<T>& x) {
   const Vec3<T> e = x[1] - x[0];

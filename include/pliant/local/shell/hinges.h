@@ -1,6 +1,6 @@
 // Changes since rest of all hinge angles (hinge.h) and strains of all triangles of a mesh, with their
-// gradients, in batches of four. Bending (bending.h) uses one of two versions: linear in the displacements,
-// or exact in the positions.
+// gradients, in batches of four. Bending (bending.h) uses one of two classes: LinearHinges, linear in the
+// displacements, or FoldingHinges, exact in the positions.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ class FoldingHinges {
  private:
   /// Returns g of four hinges from the sine and cosine of dtheta.
   static FoldTurn<Pack> turn(const math::SinCos<Pack>& change);
-  /// Returns the sine and cosine of dtheta, both times a positive number.
+  /// Returns the sine and cosine of dtheta, both multiplied by a positive number.
   math::SinCos<Pack> change(int batch, const HingeCorners<Pack>& x) const;
 
   std::vector<math::SinCos<Pack>> rest_;  // sine and cosine of theta at rest, as hinge_sin_cos returns them

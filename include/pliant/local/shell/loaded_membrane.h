@@ -56,8 +56,8 @@ class LoadedMembrane final : public NodalEnergy {
  private:
   /// Constants of four triangles: K_ij of one direction.
   struct Triangles {
-    std::array<Pack, 3> spring;  ///< -K_ij of w1 between the ends of edge k: w1 cot(angle at corner k)/2
-    Pack diagonal, uniform;      ///< K_ij of w0: uniform + diagonal delta_ij
+    std::array<Pack, 3> spring;  ///< term w1 of -K_ij for the ends of edge k: w1 cot(angle at corner k)/2
+    Pack diagonal, uniform;      ///< term w0 of K_ij: uniform + diagonal delta_ij
   };
   using Corners = ElementBatches<3>::Corners;
 

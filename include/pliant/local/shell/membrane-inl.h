@@ -127,7 +127,7 @@ void Membrane<Law>::add_viscosity(const Coordinates& x, std::vector<Eigen::Tripl
       [&](auto&& visit) {
         for (int b = 0; b < batches_.n_batches(); ++b) {
           const Edges<Pack> e = edges_of(batches_.corners(x, b));
-          std::array<std::array<Pack, 3>, 3> slope;  // symmetric: column k in place of row k
+          std::array<std::array<Pack, 3>, 3> slope;  // column k of dtau/dq, equal to row k by symmetry
           for (std::size_t k = 0; k < 3; ++k) {
             std::array<Pack, 3> unit{0.0, 0.0, 0.0};
             unit[k] = 1.0;

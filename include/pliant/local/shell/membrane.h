@@ -22,9 +22,9 @@ class Membrane final : public NodalEnergy {
   Membrane(const ShellMesh& mesh, const Sheet& sheet);
 
   Of of() const override { return Of::position; }
-  /// Returns E, J. Where a triangle has no area, E of NeoHookeanSheet is infinite or NaN. With
+  /// Returns E, J. If a triangle has no area, E of NeoHookeanSheet is infinite or NaN. With
   /// NeoHookeanLogSheet the energy, the elastic force, its derivative, the stiffness and frequency_bound()
-  /// throw InvertedElement there.
+  /// then throw InvertedElement.
   double energy(const Coordinates& x) const override;
   void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,

@@ -1,4 +1,4 @@
-// Laws of membranes for large deformation: the energy W(q) of a triangle, J. q describes the change of its
+// Laws of membranes for large deformation: the energy W(q) of a triangle, J. q is the change of the three
 // edges (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and
 // rest thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
@@ -7,7 +7,7 @@
 // stress across the sheet is 0. Then V' = -s/D. There are two such laws (squared_thickness.h):
 //   neo_hookean_membrane       the compressible material of Blatz & Ko (1962)
 //   neo_hookean_log_membrane   the classical law with ln J (solid/neo_hookean_log.h)
-// Both are incompressible rubber for nu = 1/2.
+// For nu = 1/2 both laws describe incompressible rubber.
 #pragma once
 
 #include <array>

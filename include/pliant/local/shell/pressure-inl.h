@@ -18,7 +18,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns the outward unit normals of a batch of triangles, each times twice the area of its triangle, m^2.
+/// Returns the outward unit normals of a batch of triangles, each multiplied by twice the area of its
+/// triangle, m^2.
 inline Vec3<Pack> twice_area_vector(const ElementBatches<3>::Corners& x) {
   return Vec3<Pack>(x[1] - x[0]).cross(Vec3<Pack>(x[2] - x[0]));
 }

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// An edge from node a to node b. The left triangle contains the edge from a to b, the right triangle from b
-/// to a.
+/// An edge from node a to node b. In the corner order of the left triangle the edge runs from a to b, in that
+/// of the right triangle from b to a.
 struct ShellEdge {
   int a, b;
   int left, left_corner;    ///< left triangle, and number (0 to 2) of its corner opposite the edge

@@ -14,8 +14,8 @@
 namespace pliant {
 
 namespace detail {
-/// A triangle has no area if twice its area is at most this fraction of the square of its longest edge. The
-/// computed area is then a rounding error.
+/// A triangle is rejected as flat if twice its area is at most this fraction of the square of its longest
+/// edge. The computed area is then a rounding error.
 inline constexpr double kShellFlatTriangle = 1e-12;
 }  // namespace detail
 

@@ -2,9 +2,9 @@
 // squared stretch of its area. The energy V(D) has V' = -s/D and V(1) = 0 (membrane_laws.h).
 //   Blatz & Ko      s = D^-k,  V = (D^-k - 1)/k,  k = nu/(1 - nu);  for k -> 0  V = -log D
 //   with ln J       nu ln(D s) + (1 - 2 nu)(s - 1) = 0,  V = (s - 1) - (s + 1) ln J,  ln J = ln(D s)/2
-// The equation of the law with ln J sets to zero the derivative by s of the energy of the solid,
-// mu/2 (tr C + s - 3) - mu ln J + lambda/2 (ln J)^2, times 2 s (1 - 2 nu)/mu. The equation has one solution
-// for 0 <= nu <= 1/2. For small strains both laws have s = 1 - k (D - 1).
+// The solid has the energy mu/2 (tr C + s - 3) - mu ln J + lambda/2 (ln J)^2. The equation of the law with ln
+// J states that the derivative of this energy by s is zero; it is multiplied by 2 s (1 - 2 nu)/mu. The
+// equation has one solution for 0 <= nu <= 1/2. For small strains both laws have s = 1 - k (D - 1).
 #pragma once
 
 #include <sstream>
@@ -30,7 +30,7 @@ struct BlatzKoThickness {
   Pack energy(const Pack& D) const { return k == 0 ? -log(D) : (D * share(D) - 1.0) / k; }
 };
 
-/// See BlatzKoThickness for the members. They throw InvertedElement for a triangle without area.
+/// See BlatzKoThickness for the members. The functions throw InvertedElement for a triangle without area.
 struct LogThickness {
   static constexpr const char* name = "neo_hookean_log";
   double nu;
@@ -54,8 +54,8 @@ struct LogThickness {
   }
 
  private:
-  /// Returns ln s by Newton's method, which starts from s of Blatz & Ko. The function is convex and rising in
-  /// ln s, so that all iterates after the first one are above the solution and fall.
+  /// Returns ln s by Newton's method, which starts from s of Blatz & Ko. The function is convex and
+  /// increasing in ln s, so that all iterates after the first are above the solution and decrease.
   Pack log_squared(const Pack& D) const {
     if (!(min_lane(D) > 0)) {
       std::ostringstream text;

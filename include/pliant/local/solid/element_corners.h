@@ -1,8 +1,8 @@
 // Node numbers of elements with N nodes, and parallel sums over the corners that share a node. Elements are
 // stored in packs of four, one element in each lane, and packs in blocks of fixed size. Each block sums the
-// terms of its elements for each of its own nodes, in the order of the elements. Then each node sums its
-// blocks. The order of every sum is fixed, so that results do not depend on the number of threads. The blocks
-// keep the buffer small.
+// terms of its elements at each of its nodes, in the order of the elements. Then the sums of all blocks are
+// added at each node. The order of every sum is fixed, so that results do not depend on the number of
+// threads. The blocks keep the buffer small.
 #pragma once
 
 #include <algorithm>

@@ -15,12 +15,12 @@ namespace pliant {
 template <bool full = false>
 class FourNodes {
  public:
-  /// Selects the nodes first .. first + 3, as far as they are below n.
+  /// Selects the nodes first .. first + 3 that are below n.
   FourNodes(Eigen::Index first, Eigen::Index n)
       : first_(first), count_(static_cast<int>(std::min<Eigen::Index>(Pack::kLanes, n - first))) {}
 
   Eigen::Index first() const { return first_; }
-  /// Returns the numbers of the nodes in a column; lanes without a node are 0.
+  /// Returns the values of the nodes from a column of nodal values; lanes without a node are 0.
   [[gnu::always_inline]] Pack load(const double* column) const {
     if constexpr (!full)
       if (count_ != Pack::kLanes) return load_some(column + first_);
@@ -28,14 +28,14 @@ class FourNodes {
     std::memcpy(x.vectors, column + first_, sizeof x.vectors);
     return x;
   }
-  /// Writes the numbers of the nodes to a column.
+  /// Writes the values of the nodes to a column of nodal values.
   [[gnu::always_inline]] void store(double* column, const Pack& x) const {
     if constexpr (!full)
       if (count_ != Pack::kLanes) return store_some(column + first_, x);
     std::memcpy(column + first_, x.vectors, sizeof x.vectors);
   }
-  /// Read and write vectors of the nodes. The vectors are stored in three columns of `rows` numbers, one
-  /// column after the other.
+  /// These overloads read and write vectors at the nodes. The vectors are stored in three columns of `rows`
+  /// numbers, one column after the other.
   [[gnu::always_inline]] Vec3<Pack> load(const double* columns, Eigen::Index rows) const {
     return {load(columns), load(columns + rows), load(columns + 2 * rows)};
   }

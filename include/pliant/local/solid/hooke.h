@@ -37,7 +37,7 @@ Mat3<T> hooke_stress(double lambda, double mu, const Mat3<T>& G) {
   for (int i = 0; i < Dim; ++i) S(i, i) += pressure;
   return S;
 }
-/// Returns P_v; times beta (s) it is a stress in Pa.
+/// Returns P_v, Pa/s. beta (s) times P_v is a stress.
 template <int Dim = 3, class T>
 Mat3<T> viscous_stress(double lambda, double mu, const Mat3<T>& F, const Mat3<T>& F_dot) {
   return product(F, hooke_stress<Dim>(lambda, mu, green_strain_rate(F, F_dot)));

@@ -11,7 +11,7 @@ struct InvertedElement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Returns act(). If it throws InvertedElement, the message gets the name of the part.
+/// Returns act(). If act() throws InvertedElement, throws it again with the name of the part in its message.
 template <class F>
 auto with_name_of_part(const std::string& part, F&& act) {
   try {

@@ -1,5 +1,5 @@
 // Elastic energy of a solid made of tetrahedra: E = sum over elements and quadrature points of weight * W(G).
-// The weight is that of the quadrature rule times det dX/dxi. For nodal vectors x the gradient is
+// The weight is the weight of the quadrature rule times det dX/dxi. For nodal vectors x the gradient is
 //   G = sum_a x_a (dN_a/dX)^T = (dx/dxi) (dX/dxi)^-1,
 // where x = d for the linear law and x = p = s + d for the other laws. The force on node a is
 //   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG.

@@ -19,8 +19,8 @@ namespace pliant {
 /// numbers in each column. density: kg/m^3. Throws std::invalid_argument for another number of rows.
 VecX<double> lumped_mass(const Nodes& rest, const Eigen::MatrixXi& elements, double density);
 
-/// Returns the entries of the consistent mass matrix over nodes, kg, which applies to each direction.
-/// Arguments and errors of lumped_mass.
+/// Returns the entries of the consistent mass matrix over nodes, kg, which applies to each direction. The
+/// arguments and errors are those of lumped_mass.
 std::vector<Eigen::Triplet<double>> consistent_mass(const Nodes& rest, const Eigen::MatrixXi& elements,
                                                     double density);
 

@@ -1,8 +1,8 @@
-// Sine, cosine and exponential from additions and multiplications alone, for a double or for a Pack. A lane
-// of a Pack has the bits of the result for a double, on every machine; four lanes cost about as much as one
-// double. The measured errors are below one unit in the last place (tests/math/scalars.cpp). Method: the
+// Sine, cosine and exponential by additions and multiplications only, for a double or for a Pack. Each lane
+// of a Pack has the same bits as the result for a double, on every machine; four lanes cost about as much as
+// one double. The measured errors are below one unit in the last place (tests/math/scalars.cpp). Method: the
 // argument is reduced by multiples of pi/2 or log 2, which are split into constants with few bits (Cody &
-// Waite 1980); Taylor series evaluate the reduced argument.
+// Waite 1980); Taylor series are evaluated at the reduced argument.
 #pragma once
 
 #ifdef __FAST_MATH__
@@ -32,7 +32,8 @@ inline T abs(const T& x) {
 
 namespace elementary {
 
-/// The sum of a number below 2^51 and this constant has the nearest integer in its last bits.
+/// After the addition of this constant to a number x, |x| < 2^51, the last bits of the sum are the nearest
+/// integer.
 inline constexpr double kRounder = 0x1.8p52;
 
 /// Returns the integer nearest to x, |x| < 2^51.

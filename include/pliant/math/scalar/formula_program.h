@@ -18,13 +18,14 @@ using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
 using Dual1 = Dual<1, double>;
 
+/// Size of the stack for most formulas; formulas that need more numbers use kLargeStack.
 inline constexpr int kSmallStack = 16;
 /// Each level of nesting adds at most five numbers to the stack: the left operands of a sum and of a product,
 /// the base of a power, and two earlier arguments of a function.
 inline constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
 
-/// Returns the sign of x just after t: that of its value, or, if this is 0, that of the first derivative that
-/// is not zero; 0 if all are zero.
+/// Returns the sign (-1, 0 or 1) of x just after t: the sign of the first nonzero number among the value, the
+/// first and the second derivative of x; 0 if all three are zero.
 inline double sign_ahead(const Taylor& x) {
   for (const double a : {x.v, x.d, x.dd}) {
     if (a != 0) return a > 0 ? 1 : -1;
@@ -58,8 +59,8 @@ T tan(const T& a) {
   return chain(a, y, slope, 2 * y * slope);
 }
 
-/// Returns a^n for a constant exponent. If the factor n or n - 1 in a derivative of a^n is zero, this
-/// derivative is 0 for every a.
+/// Returns a^n for a constant exponent n. If a factor n or n - 1 of a derivative is zero, the derivative is 0
+/// for every a (also for a = 0, where the power of a is infinite).
 template <class T>
 T power(const T& a, double n) {
   const double x = plain(a), slope = n == 0 ? 0 : n * std::pow(x, n - 1);
@@ -81,8 +82,8 @@ inline Taylor variable_power(const Taylor& a, const Taylor& b) {
   return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
 }
 
-/// Returns the argument that is larger just after t if sign is 1, or smaller if sign is -1; the first of two
-/// equal ones; NaN if one of them is NaN.
+/// Returns the argument that is larger just after t if sign is 1, or smaller if sign is -1. Returns x if the
+/// arguments are equal, and NaN if one of them is NaN.
 template <class T>
 T choose(const T& x, const T& y, double sign) {
   const T difference = x - y;
@@ -130,8 +131,8 @@ inline int arguments(Code code) {
   }
 }
 
-/// Returns the result of one instruction on its arguments, x[0] the first. variables: the values of the names
-/// of the formula, in the order of their numbers.
+/// Returns the result of one instruction for its arguments x[0], x[1], ... variables: the values of the named
+/// quantities, in the order of their numbers.
 template <class T>
 T apply(const Instruction& instruction, const T& time, const T* variables, const T* x) {
   switch (instruction.code) {

@@ -9,9 +9,10 @@ template <class F>
   f();
 }
 
-/// Calls f, through inline_all() if All is true. This makes formulas of shapes and links on Pack faster. On
-/// dual numbers it makes them hardly faster, and it doubles or triples the time to compile. To measure both,
-/// set All to false and true and compare step_bench and the time of a build.
+/// Calls f, through inline_all() if All is true. For formulas of shapes and links (deform/link.h) on Pack,
+/// All = true makes the program faster. For dual numbers, All = true makes the program hardly faster, and the
+/// time to compile two to three times as long. To measure both times, compare step_bench and a build with All
+/// false and true.
 template <bool All, class F>
 void inline_all_if(const F& f) {
   if constexpr (All)

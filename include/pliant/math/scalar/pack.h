@@ -1,6 +1,5 @@
-// Pack: four doubles that a formula evaluates together, so that one evaluation serves four material points or
-// four rigid parts.
-// The arithmetic maps to the vector units of the target; results do not depend on their width.
+// Pack: four doubles that a formula evaluates together, for four material points or four rigid parts at once.
+// The arithmetic uses the vector units of the target; results do not depend on the width of these units.
 #pragma once
 
 #include <cmath>

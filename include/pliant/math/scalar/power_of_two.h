@@ -1,5 +1,5 @@
-// Powers of two as scales. Multiplication by a power of two rounds no number, so that a factorisation of a
-// scaled matrix has the rounding errors of the original matrix, and pivots that do not depend on units.
+// Powers of two as scales. Multiplication by a power of two causes no rounding. A factorisation of a scaled
+// matrix therefore has the rounding errors of the original matrix, and its pivots do not depend on units.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,9 @@ inline double power_of_two(double x) {
   return std::ldexp(1.0, std::ilogb(x));
 }
 
-/// Returns factors s, powers of two, that equalise the diagonal d of a symmetric matrix: all numbers
-/// s_i^2 |d_i| are in [1/2, 4). Suppose that other units multiply each d_i by a power of four of its own, and
-/// all d_i by one common power of two. Then all numbers s_i^2 |d_i| change by one common power of two at
-/// most.
+/// Returns factors s, powers of two, that equalise the diagonal d of a symmetric matrix: all numbers s_i^2
+/// |d_i| are in [1/2, 4). Let a change of units multiply each d_i by a power of four of its own, and all d_i
+/// by one common power of two. Then all numbers s_i^2 |d_i| change by at most one common power of two.
 template <class Vector>
 typename Vector::PlainObject equalising_scales(const Eigen::MatrixBase<Vector>& d) {
   const auto exponent = [&](Eigen::Index i) {

@@ -1,4 +1,4 @@
-// The rule for the key frames of functions of time.
+// The check of the key frames of a function of time.
 #pragma once
 
 #include <cmath>

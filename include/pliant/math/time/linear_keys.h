@@ -13,9 +13,9 @@
 namespace pliant {
 
 /// With keys (t_i, y_i), the value between the keys i and i+1 is y_i + (y_{i+1} - y_i) (t - t_i) / (t_{i+1} -
-/// t_i). Before the first key and after the last the value is constant. Every key is a kink, also if its rate
-/// does not jump: a key that is added later therefore does not change the steps before it. At a key the rate
-/// is that after the key.
+/// t_i). Before the first key and after the last the value is constant. Every key is a kink, even if the rate
+/// does not jump there. Otherwise an added key could turn an earlier key into a kink. At a key the rate is
+/// the rate just after the key.
 class LinearKeys final : public TimeFunction::Impl {
  public:
   /// t: times, s. y: a value for each time. Throws std::invalid_argument if there is no key, if the numbers
@@ -55,7 +55,8 @@ class LinearKeys final : public TimeFunction::Impl {
   std::vector<double> t_, y_;
 };
 
-/// Returns the piecewise linear function through keys. Throws what LinearKeys throws.
+/// Returns the piecewise linear function through keys. Throws the exceptions of the constructor of
+/// LinearKeys.
 inline TimeFunction linear_key_frames(std::vector<double> t, std::vector<double> y) {
   return TimeFunction(std::make_shared<LinearKeys>(std::move(t), std::move(y)));
 }

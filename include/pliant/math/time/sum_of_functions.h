@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// f(t) + g(t). The sum has the kinks of both.
+/// f(t) + g(t). The sum has the kinks of f and of g.
 class SumOfFunctions final : public TimeFunction::Impl {
  public:
   SumOfFunctions(TimeFunction f, TimeFunction g) : f_(std::move(f)), g_(std::move(g)) {}

@@ -25,8 +25,8 @@ namespace implicit_nodes {
 /// then added to S: first kFirstExtraMass times M, and in each further attempt kExtraMassGrowth times the
 /// mass of the attempt before, up to kMaxExtraMass times M.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
-/// The sparsity pattern of K is found at the rest shape with perturbed nodes, so that no entry is zero by
-/// chance. Size of the perturbation, in sizes of the part.
+/// Size of the perturbation of the nodes, in sizes of the part. The sparsity pattern of K is found at the
+/// rest shape with perturbed nodes, so that no entry is zero by chance.
 inline constexpr double kPerturbation = 1e-7;
 
 using Of = NodalEnergy::Of;
@@ -68,8 +68,8 @@ inline VecX<double> viscosity_along(const NodalDeformation& local, const VecX<do
   return -f;
 }
 
-/// Returns the three columns of the rotation of delta = G - G0 at the nodes: -[d]x. The other columns of
-/// delta are zero.
+/// Returns the three columns -[d]x of delta = G - G0 at the nodes, which belong to the rotation. The other
+/// columns of delta are zero.
 inline MatX<double> turned_displacements(const NodalWorkspace& w, Eigen::Index n_d) {
   const Eigen::Index n = w.s.rows();
   MatX<double> delta = MatX<double>::Zero(n_d, 3);
@@ -153,7 +153,7 @@ PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double 
   const bool refactor = stiffness_changes_ || c != c_ || nodal.law_factor != law_factor_;
   int factorisations = 0;
   if (refactor || frame_in_border()) {
-    c_ = 0;  // in case the factorisation fails
+    c_ = 0;  // marks the factor as invalid if the factorisation throws
     const std::string name = "the stiffness of the nodes of part '" + part_->part->name() + "'";
     law_factor_ = nodal.law_factor;
     try {
@@ -229,7 +229,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
   if (stiffness_changes_)
-    factor_->solve(T_.middleCols(n_r() + 3, 3 + n_s));  // the columns before these are zero
+    factor_->solve(T_.middleCols(n_r() + 3, 3 + n_s));  // the first three columns of x_r are zero
   if (n_dense > 0) factor_->solve(T_.rightCols(n_dense));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_dense).array() -= 1;
@@ -238,7 +238,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   N_T_ = at_joints(T_);
 }
 
-/// Sets the columns of x_r in the border, M delta and Q, and the blocks J^T Q and `turned_` of the core.
+/// Sets the columns M delta + Q of x_r in the border, and the blocks J_Q_, P_ and M_r_ of the core.
 PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, double c) {
   const Eigen::Index n = local().n_nodes(), n_d = local().n_d(), n_s = part_->n_s;
   const MatX<double> delta = implicit_nodes::turned_displacements(w, n_d);
@@ -257,7 +257,7 @@ PLIANT_INLINE void ImplicitNodes::add_frame_columns(const NodalWorkspace& w, dou
     B_.col(n_r() + 6 + k) = Q;
   }
   // H0 + delta^T W is the matrix H of include/pliant/part/local/README.md. The evaluation w contains the
-  // factors of the matrix K = H - P^T of this README.md; P follows from H and K.
+  // factors of the matrix K = H - P^T in that file; P follows from H and K.
   const MatX<double> delta_W = delta.transpose() * B_.leftCols(n_r());
   MatX<double> H = w.H0;
   H.middleRows<3>(3) += delta_W;

@@ -17,9 +17,9 @@
 //   e_s = r_v + s r_q and e_r = c^2 r_v + c r_q of the parameters,
 //   E = c beta s (V_p - K_p - w w^T) (r_q + J r_q,s) with r_q,s of the parameters.
 // Without energies of positions delta and P are neglected, because linear elasticity is for small
-// displacements; without parameters x_r is then 0. While K and c are constant, S is factored once. The
-// border, the few columns beside S, is solved with the factor of S: once for each factor, or in each step if
-// global parameters change W. A stage then costs one sparse solve.
+// displacements. If there are no parameters either, x_r is 0. While K and c are constant, S is factored once.
+// The border consists of the few columns beside S. It is solved with the factor of S: once for each factor,
+// or in each step if global parameters change W. A stage then costs one sparse solve.
 #pragma once
 
 #include <memory>
@@ -38,8 +38,8 @@ class ImplicitNodes final : public ImplicitPart {
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
   /// Factors S if c or the factor of the laws has changed, and at every call if an energy depends on
-  /// positions. With the stiffness of these energies at rest, long steps would fail for parts that are bent
-  /// or stretched far.
+  /// positions. If S had the stiffness of these energies at rest, long steps would fail for parts that are
+  /// bent or stretched far.
   int prepare(const PartWorkspace<double>& w, double c, double t) override;
   void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) override;
   MatX<double> compliance() const override;
@@ -71,8 +71,8 @@ class ImplicitNodes final : public ImplicitPart {
     const typename B::PlainObject scaled = core_scale_.asDiagonal() * b;
     return core_scale_.asDiagonal() * core_.solve(scaled);
   }
-  /// Returns the values of fields at the attachment points of joints, three rows a point. nodal: one field
-  /// over the local coordinates in each column.
+  /// Returns the values of fields at the attachment points of joints, three rows for each point. nodal: one
+  /// field over the local coordinates in each column.
   MatX<double> at_joints(const MatX<double>& nodal) const;
 
   std::unique_ptr<SparseFactor> factor_;
@@ -83,7 +83,7 @@ class ImplicitNodes final : public ImplicitPart {
   double c_ = 0;               ///< c of the current factor, s; 0 without a factor
   Eigen::Index analysed_ = 0;  ///< number of entries of the analysed pattern
   std::vector<Eigen::Triplet<double>> entries_;
-  SparseMatrix K_, S_;       ///< lower triangles of one pattern: K of the energies of displacements, and S
+  SparseMatrix K_, S_;       ///< lower triangles with a common pattern: K_d, and S
   MatX<double> B_, T_;       ///< border, S^-1 border
   MatX<double> Z_;           ///< S^-1 N^T with the interpolation N of at_joints()
   MatX<double> B_Z_, N_T_;   ///< B^T Z, N T

@@ -33,7 +33,7 @@ inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows have zero value.
+/// Projects x, the changes of the rates by the filter, so that the rows of joints and the pushed rows vanish.
 /// pushed: the rows of strings that pull and of limits that push. Three passes refine x if the factor of the
 /// joints is not accurate.
 template <int Max>

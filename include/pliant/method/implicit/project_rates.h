@@ -1,6 +1,7 @@
 // Projection of filtered rates (implicit_part.h): the rows of joints, of strings that pull and of limits that
 // push regain the values that these rows had before the filter. The correction of the rates is the smallest
-// one in a metric: the inverse of the compliance for implicit parts, and the mass matrix M for other parts.
+// correction in a metric: the inverse of the compliance for implicit parts, the mass matrix M for other
+// parts.
 #pragma once
 
 #include <pliant/method/implicit/implicit_part.h>

@@ -23,23 +23,26 @@ namespace pliant {
 
 namespace stage_solver {
 
-/// The iteration is slow if a change is more than this fraction of the change before it.
+/// The iteration is slow if a change is more than this fraction of the previous change.
 inline constexpr double kSlowContraction = 0.9;
 /// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
-/// Number of iterations of a stage without the matrix, for each velocity of the largest cluster; at least
-/// kMaxIterations in all. The matrix costs two evaluations for each of these velocities.
+/// The largest number of iterations of a stage without the matrix is kFreeIterations times the number of
+/// velocities of the largest cluster, but at least kMaxIterations. The matrix costs two evaluations for each
+/// of these velocities.
 inline constexpr double kFreeIterations = 0.5;
-/// Largest number of matrices that are computed for one stage, besides that at the start of the step.
+/// Largest number of matrices that are computed for one stage, in addition to the matrix at the start of the
+/// step.
 inline constexpr int kMaxMatrices = 4;
-/// Changes that do not shrink and are at most this, in sizes of the part and radians, are rounding.
+/// Changes of at most this number, in sizes of the part and radians, are rounding errors if they do not
+/// shrink.
 inline constexpr double kRounding = 1e-12;
 /// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
 /// lengths and local coordinates, this size times the square root of the mass for modes, 1 for angles and
 /// other parameters.
 inline constexpr double kDifference = 1e-7;
-/// The iteration has converged if the last change and the expected remaining change are at most this, in
-/// tolerances.
+/// The iteration has converged if the last change and the expected remaining change are at most this number,
+/// in tolerances.
 inline constexpr double kConverged = 0.02;
 
 /// Converts changes of coordinates (n_q) to a vector of n_v numbers: changes of quaternions become rotations

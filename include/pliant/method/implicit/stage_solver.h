@@ -53,8 +53,8 @@ class StageSolver {
   /// Evaluates A_q and A_v of each cluster at (t, q, v) by difference quotients, and factors its matrix.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
   /// Sets one column of A_q or A_v of each cluster to a difference quotient: the change of the accelerations
-  /// in the workspace from v_dot_, divided by the difference. difference: differences(column) for A_q,
-  /// slow_rate() times this for A_v.
+  /// in the workspace from v_dot_, divided by the difference. difference: differences(column) for A_q, and
+  /// slow_rate() times differences(column) for A_v.
   void set_column(Eigen::Index column, const VecX<double>& difference, MatX<double> Cluster::*A);
   /// Returns the differences for one column of the matrices of all clusters: n_v numbers, with at most one
   /// nonzero number for each cluster.

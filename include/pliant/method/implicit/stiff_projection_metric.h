@@ -1,8 +1,8 @@
 // The metric of the projection after an implicit step. In the mass metric a projection would move stiff
 // parameters as easily as others, and this small displacement would cause unbounded elastic forces. For parts
 // without local deformation, (c beta + c^2) K_s is therefore added to the block of q_s in M. K_s is the
-// stiffness of the parameters, beta the factor of their damping by K_s, and c = gamma h of the stages. Stiff
-// parameters then respond to impulses as in a step. The linear and the angular momentum do not change.
+// stiffness of the parameters, beta the coefficient of K_s in their damping, and c = gamma h of the stages.
+// Stiff parameters then respond to impulses as in a step. The linear and the angular momentum do not change.
 #pragma once
 
 #include <pliant/body/dynamics.h>

@@ -49,18 +49,19 @@ class LocalDeformation {
   /// Local coordinates and their rates at time 0.
   const VecX<double>& initial() const { return initial_; }
   const VecX<double>& initial_rate() const { return initial_rate_; }
-  /// Changes of (c, theta, q_s), body frame, and of their rates at time 0, which represent the share of the
-  /// initial displacements and velocities that modes cannot represent. Empty: no changes.
+  /// Changes of (c, theta, q_s), body frame, and of their rates at time 0. These changes represent the share
+  /// of the initial displacements and velocities that modes cannot represent. Empty: no changes.
   const VecX<double>& initial_frame() const { return initial_frame_; }
   const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
+  /// Damping by mass: factor alpha, 1/s. Damping by stiffness: factor beta, s.
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
   /// Returns the name of local coordinate number k, for example "d[17].x" or "mode[3]".
   virtual std::string coordinate_name(Eigen::Index k) const = 0;
   /// Returns the unit of local coordinate number k.
   virtual const char* unit(Eigen::Index k) const = 0;
-  /// Returns an estimate, on the low side, of the time of an evaluation, in microseconds. The choices of the
-  /// number of threads (io) and of the integrator (simulate) use this time.
+  /// Returns a low estimate of the time of an evaluation, in microseconds. The choices of the number of
+  /// threads (io) and of the integrator (simulate) use this time.
   virtual double cost() const = 0;
   /// Returns the number and the kind of the local coordinates for `pliant info`, for example "600 local, of
   /// 200 nodes and 396 triangles; laws: ..." for 600 local coordinates.
@@ -84,7 +85,7 @@ class LocalDeformation {
   virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The stages are those of
-  // include/pliant/body/README.md; stage 4, the joints, is not here. The workspace must come from
+  // include/pliant/body/README.md; this class has no stage 4, the joints. The workspace must come from
   // workspace(), and LocalWorkspace::place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
@@ -103,8 +104,8 @@ class LocalDeformation {
   /// The caller adds the generalised force on (c, theta, q_s) to the argument f_r of accelerations().
   virtual void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const = 0;
   /// Stage 5: solves for the accelerations. f_r: on input the generalised forces on (c, theta, q_s), without
-  /// those of forces(); on output the accelerations a_r of (c, theta, q_s), body frame. d_ddot: output, the
-  /// accelerations of the local coordinates.
+  /// the contributions of forces(); on output the accelerations a_r of (c, theta, q_s), body frame. d_ddot:
+  /// output, the accelerations of the local coordinates.
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 

@@ -40,8 +40,8 @@ PLIANT_INLINE ModalDeformation::ModalDeformation(const Part& part, const LocalSe
   mesh_ = std::move(basis_.mesh);
   oscillators_ = oscillators_at(1);
   if (part.n_s() > 0) packs_ = packs_of(basis_.points);
-  // The modes get the components of an initial field along the modes. The frame and the parameters get a
-  // least-squares fit of the field.
+  // The initial amplitudes are the components of an initial field along the modes. The initial changes of the
+  // frame and of the parameters are a least-squares fit of the field.
   const MatX<double> G = rest_frame(part, basis_);
   auto project = [&](const std::function<Vec3<double>(const Vec3<double>&)>& field, VecX<double>& on_modes,
                      VecX<double>& on_frame) {

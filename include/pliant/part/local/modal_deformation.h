@@ -6,8 +6,8 @@
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
 // f_r and f_d are the forces on (c, theta, q_s) and on q_d. S is a Schur complement, not the shape matrix of
-// Eq. (5). The current reference shape s is not in the span of these fields. Integrals of s alone are
-// therefore those of the mass points of the part (part/inertia.h).
+// Eq. (5). The current reference shape s is not in the span of the fields phi_a. Integrals of s alone are
+// therefore sums over the mass points of the part (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>
@@ -34,7 +34,7 @@ struct ModalWorkspace final : LocalWorkspace {
   VecMax<double> scale;        ///< factors that scale the diagonal of M at d = 0 to 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< factorisation of scale S scale
   // Stage forces().
-  Nodes F;           ///< forces on the spectral nodes: inertial forces -m b, and those of push(), N
+  Nodes F;           ///< forces on the spectral nodes: inertial forces -m b and the forces of push(), N
   VecX<double> f_r;  ///< forces of inertia, gravity and drag on (c, theta, q_s), body frame
   VecX<double> f_d;  ///< forces of elasticity, damping and drag on the amplitudes
   // Joints.

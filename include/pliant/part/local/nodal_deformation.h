@@ -10,7 +10,7 @@
 //   d_ddot = y - G a_r
 // with G = [I, -[p]x, J], p = s + d and the multipliers kappa of the conditions. The sums are over nodes, m
 // is the mass of a node, and the columns of P for c and theta are zero. No matrix of mesh size is formed.
-// nodal_masses-inl.h and nodal_forces-inl.h have the stages, nodal_frame-inl.h the conditions of the frame.
+// nodal_masses-inl.h and nodal_forces-inl.h have the stages, nodal_frame-inl.h has the conditions.
 #pragma once
 
 #include <optional>

@@ -138,8 +138,8 @@ inline void add_shape_derivatives(const Part& part, const NodalDeformation& loca
   }
 }
 
-/// Adds the contributions of the global parameters to W^T d, H, P and the rates, without those of
-/// add_shape_derivatives(). W^T d has the rows sum m s x d for theta and sum m J^T d for the parameters.
+/// Adds the contributions of the global parameters to W^T d, H, P and the rates, without the terms that
+/// add_shape_derivatives() adds. W^T d has the rows sum m s x d for theta and sum m J^T d for the parameters.
 inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot, bool linear,
                                NodalWorkspace& w, ReferenceConditions& conditions) {
   using namespace node_sums;
@@ -167,8 +167,8 @@ inline void add_parameter_rows(const double* mass, const VecMax<double>& q_s_dot
   if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
 }
 
-/// Factors scale K scale, where scale H0 scale has a unit diagonal. The row and the column of a parameter
-/// without inertia are replaced by those of the unit matrix, and its entry of the rates by 0.
+/// Factors scale K scale, where scale H0 scale has a unit diagonal. For a parameter without inertia, the row
+/// and the column of K become those of the unit matrix, and the entry of the rates becomes 0.
 inline void factor_conditions(const Part& part, int n_s, MatMax<double>& K, NodalWorkspace& w) {
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   w.without_inertia.reset();

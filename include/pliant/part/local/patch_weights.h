@@ -3,7 +3,7 @@
 // proportional to phi = (1 - r^2/R^2)^2, with the distance r of the node at rest and the radius R. The
 // corrected weights reproduce the position X(m) of the point at rest,
 //   sum w = 1,   sum w X = X(m),
-// so that the torque of the force is kept.
+// so that the forces on the patch have the torque of the force at the point.
 #pragma once
 
 #include <pliant/part/local/local_mesh.h>

@@ -1,7 +1,7 @@
 // The mesh pattern of balls: the lattice of a cube of 2m x 2m x 2m cells. The upper and lower faces of the
 // cube map to concentric rings, so that rims, edges and coordinate planes are mesh lines. Shell r of the
-// lattice consists of the points (i, j, k) with max(|i|, |j|, |k|) = r. The directions of the points of
-// shell r are those of the surface of the pattern with m = r.
+// lattice consists of the points (i, j, k) with max(|i|, |j|, |k|) = r. These points have the same directions
+// as the surface points of the pattern with m = r.
 #pragma once
 
 #include <algorithm>

@@ -13,9 +13,9 @@ namespace pliant {
 class Surface {
  public:
   /// resolution: for a ball the number of edges along an eighth of a great circle, from 1 to 512. A ball has
-  /// 24 resolution^2 + 2 vertices and 48 resolution^2 triangles. A torus has 4 resolution vertices around the
-  /// tube and 8 resolution around the axis. Throws std::invalid_argument for a resolution outside 1 to 512.
-  /// spacing: for a ball, see BallSurface. The numbers of vertices and triangles are those of a spacing of 1.
+  /// 24 resolution^2 + 2 vertices and 48 resolution^2 triangles for a spacing of 1. A torus has 4 resolution
+  /// vertices around the tube and 8 resolution around the axis. Throws std::invalid_argument for a resolution
+  /// outside 1 to 512. spacing: for a ball, see BallSurface.
   Surface(const Part& part, int resolution, const std::array<int, 3>& spacing = {1, 1, 1});
 
   const std::vector<Material<double>>& material() const { return material_; }
@@ -42,7 +42,8 @@ struct SurfaceNodes {
   std::vector<int> node;
   Eigen::Matrix3Xi triangles;  ///< indices into `node`, counter-clockwise seen from outside
 
-  /// Returns the values at the surface nodes, one column for each. all: one row for each node of the mesh.
+  /// Returns the values at the surface nodes, one column for each surface node. all: one row for each node of
+  /// the mesh.
   Eigen::Matrix3Xd of(const Eigen::Ref<const Nodes>& all) const;
 };
 /// Returns the surface nodes of a mesh.

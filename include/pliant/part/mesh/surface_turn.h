@@ -11,7 +11,7 @@ namespace pliant {
 inline constexpr double kMaxLinearRotation = 0.3;
 
 /// Returns whether the part has dynamic parameters and an elastic law that is linear in d and depends on the
-/// direction of d. All parts with dynamic parameters and modes are such parts.
+/// direction of d. The result is true for all parts that have dynamic parameters and modes.
 bool linear_on_moving_shape(const Part& part);
 
 /// Returns the largest angle (rad) by which a triangle of the surface of the local mesh rotates, in the frame

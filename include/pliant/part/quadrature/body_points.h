@@ -1,5 +1,5 @@
 // Points inside a part with their masses, for integrals of any function over its mass: forces per mass, and
-// the check of mass distributions. The points of mass_points.h serve M and g_q only.
+// the check of mass distributions. The points of mass_points.h are exact for M and g_q only.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Quadrature points of the rest body for its strain energy (part/continuum.h).
+// Quadrature points of the rest body for the strain energy of a part (part/continuum.h).
 #pragma once
 
 #include <pliant/part/part.h>

@@ -1,6 +1,6 @@
-// An OpenGL 3.3 core context. Two libraries can provide one without a window: OSMesa (Mesa before 25.1) and
-// EGL (without a surface, or on Mesa's software device). These libraries are opened at run time, when a
-// context is requested. The context of a window is provided by the program that opens the window.
+// An OpenGL 3.3 core context. Two libraries can provide a context without a window: OSMesa (Mesa before 25.1)
+// and EGL (without a surface, or on Mesa's software device). These libraries are opened at run time, when a
+// context is requested. The program that opens a window provides the context of the window.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ class GlContext {
   /// Opens a context. Throws std::runtime_error, which lists the backends that were tried, the reason of
   /// each failure and the packages to install.
   explicit GlContext(GlBackend backend = GlBackend::automatic);
-  /// Returns the address of a GL entry point of the current context; nullptr if there is none with that name.
+  /// Returns the address of a GL entry point of the current context; nullptr if no entry point has this name.
   using Loader = std::function<void*(const char* name)>;
   /// Uses the context of a window, which the caller has made current and keeps current on this thread. Throws
   /// std::runtime_error if the context does not work.
@@ -42,7 +42,7 @@ class GlContext {
     GlContext& context_;
   };
 
-  /// Returns the address of a GL entry point; nullptr if there is none with that name.
+  /// Returns the address of a GL entry point; nullptr if no entry point has this name.
   void* function(const char* name) const;
   /// Returns "OSMesa", "EGL surfaceless", "EGL software device" or "window".
   const std::string& backend() const { return backend_; }

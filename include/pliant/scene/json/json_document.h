@@ -39,8 +39,8 @@ class JsonDocument {
 
   /// Replaces the value at a JSON pointer by the JSON value in `text`. If the pointer has no value, adds a
   /// key to an object or an element to an array ("/-" or the index after the last one). Text that is clearly
-  /// not JSON (arm, 2*t) becomes a string. Faults (no such parent, bad value) are added to `faults`; the
-  /// document is then unchanged. References to values become invalid.
+  /// not JSON (arm, 2*t) becomes a string. Faults (the parent does not exist, the text is bad JSON) are added
+  /// to `faults`; the document is then unchanged. References to values become invalid.
   void set(const std::string& pointer, const std::string& text, Diagnostics& faults);
   /// Applies one assignment "/pointer=value".
   void set(const std::string& assignment, Diagnostics& faults);

@@ -24,7 +24,7 @@ class JsonValue {
   enum class Kind { kNull, kBoolean, kNumber, kString, kArray, kObject };
   struct Number {
     double value;
-    bool integer;  ///< whether it is written without decimal point and exponent
+    bool integer;  ///< whether the number is written without decimal point and exponent
   };
   struct Member;
   using Array = std::vector<JsonValue>;

@@ -7,9 +7,9 @@
 
 namespace pliant {
 
-/// Thrown for a file that cannot be read. what() begins with the path. Then it gives the limit of a file that
-/// is too large, or the message of the operating system and, for a missing file, the nearest name in its
-/// folder.
+/// Thrown for a file that cannot be read. what() begins with the path. For a file that is too large, the
+/// limit follows. Otherwise the message of the operating system follows, and for a missing file the nearest
+/// name in its folder.
 class FileError : public std::runtime_error {
  public:
   enum class Reason { kMissing, kNotReadable, kTooLarge };
@@ -24,8 +24,8 @@ class FileError : public std::runtime_error {
   Reason reason_;
 };
 
-/// Returns the bytes of a file; "-" is standard input. A file larger than `max_bytes` is refused; for a
-/// regular file this is checked before reading. Throws FileError.
+/// Returns the bytes of a file; "-" is standard input. A file larger than `max_bytes` is refused; the size of
+/// a regular file is checked before reading. Throws FileError.
 std::string read_text_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace pliant

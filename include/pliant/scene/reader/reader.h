@@ -38,9 +38,9 @@ class Reader {
   bool is_faulty(const JsonValue& value) const;
   /// Returns whether all required keys of the record are given.
   bool complete() const;
-  /// Returns the value of the key or its default, or null if it has neither.
+  /// Returns the value of the key or its default, or null if there is neither value nor default.
   const JsonValue* find(const std::string& key) const;
-  /// Returns the value of the key or its default. Throws std::logic_error if it has neither.
+  /// Returns the value of the key or its default. Throws std::logic_error if there is neither.
   const JsonValue& at(const std::string& key) const;
 
   double number(const std::string& key) const;
@@ -52,12 +52,12 @@ class Reader {
   TimeFunction time_function(const std::string& key) const;
   TimeVector time_vector(const std::string& key) const;
 
-  // The following members also return faulty objects, so that the sound values inside them can be read.
+  // The following members also return faulty objects, so that the valid values inside them can be read.
 
   /// Returns a reader of the object under a key, or else of the default of the key. If the type has several
-  /// records, the reader has the one that the object was validated against. If there is neither object nor
-  /// default and the type is a single record, the values of the reader are the defaults of this record; for
-  /// other types std::logic_error is thrown.
+  /// records, the reader uses the record that the object was validated against. If there is neither object
+  /// nor default and the type is a single record, the values of the reader are the defaults of this record;
+  /// for other types std::logic_error is thrown.
   Reader object(const std::string& key) const;
   /// Returns the objects of the array under a key; empty for an absent key.
   std::vector<Reader> objects(const std::string& key) const;
@@ -78,8 +78,8 @@ const schema::Record* chosen_record(const schema::Type& type, const JsonValue& o
 
 Vec3<double> read_vector3(const JsonValue& value);
 
-/// Returns the name given in the object, or else a name made of its kind and its index in its list (from 0),
-/// for example "hinge1" for index 0.
+/// Returns the name given in the object, or else a name made of `kind` and `number` + 1, for example "hinge1"
+/// for number 0. number: index of the object in its list.
 std::string name_of(const Reader& r, const char* kind, std::size_t number);
 
 }  // namespace pliant

@@ -112,9 +112,9 @@ Type map(Type element);
 Type record(Record fields);
 /// An object whose key `tag` selects the record, as {"type": "taper", ...}. The records do not list the tag.
 Type tagged(std::string tag, std::vector<Record> records);
-/// One of several types. The JSON type of a value selects the alternative. For objects, the keys present
-/// decide too; among several alternatives for arrays, the one with the fewest faults is selected. Only faults
-/// of the selected alternative are reported.
+/// One of several types. The JSON type of a value selects the alternative. Among several alternatives for
+/// objects, the keys of the object decide (chosen_alternative()). Among several alternatives for arrays, the
+/// alternative with the fewest faults is selected. Only faults of the selected alternative are reported.
 Type one_of(std::vector<Type> alternatives);
 
 /// A key of a record.
@@ -130,8 +130,8 @@ struct Field {
   std::string example{};       ///< JSON text for the message about a missing key
 };
 
-/// Declare a required or an optional key. They throw std::logic_error if `example` or `default_text` is not
-/// JSON.
+/// Declare a required or an optional key. Both functions throw std::logic_error if `example` or
+/// `default_text` is not JSON.
 Field required(std::string key, Type type, std::string description, std::string example = "");
 Field optional(std::string key, Type type, std::string description, std::string default_text = "");
 
@@ -152,9 +152,10 @@ struct Record {
   const Field* find(const std::string& key) const;
 };
 
-/// Returns the alternative of a kOneOf type that fits the keys of an object best. It declares most of these
-/// keys, where a required key outweighs all optional ones; among equals it is the first one. Returns null if
-/// no alternative accepts objects, or if several do and none declares a key of this object.
+/// Returns the alternative of a kOneOf type that declares most keys of an object. A required key outweighs
+/// all optional keys, and among equal alternatives the first is returned. If only one alternative accepts
+/// objects, returns this alternative. Returns null if no alternative accepts objects, or if several
+/// alternatives accept objects and none of them declares a key of this object.
 const Type* chosen_alternative(const Type& one_of, const JsonValue& object);
 
 /// Returns whether a key is ignored in every object: comments "//" and extensions "x-...".
