@@ -110,24 +110,29 @@ TableColumns TrajectoryTable::columns() const {
   return table;
 }
 
-void TrajectoryTable::add_part(const State& state, std::size_t i, std::vector<double>& numbers) const {
+void TrajectoryTable::add_part(const State& state, std::size_t i, const Workspace<double>& work,
+                               std::vector<double>& numbers) const {
   const PartModel& part = simulation_->model().parts()[i];
   if (part.q0 < 0) return;
   const double *q = state.q.data() + part.q0, *v = state.v.data() + part.v0;
   numbers.insert(numbers.end(), q, q + 7 + part.n_s);
   numbers.insert(numbers.end(), v, v + 6 + part.n_s);
   if (!centre_shown_[i]) return;
-  const PartWorkspace<double>& work = simulation_->output_workspace().parts[i];
-  add_vector(numbers, work.c + work.R * work.inertia.moment / work.inertia.mass);
+  const PartWorkspace<double>& now = work.parts[i];
+  add_vector(numbers, now.c + now.R * now.inertia.moment / now.inertia.mass);
 }
 
 void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
+  simulation_->evaluate_output([&](Workspace<double>& work) { evaluate_row(state, work, numbers); });
+}
+
+void TrajectoryTable::evaluate_row(const State& state, Workspace<double>& work,
+                                   std::vector<double>& numbers) const {
   const Model& model = simulation_->model();
-  Workspace<double>& work = simulation_->output_workspace();
   Ledger ledger = simulation_->dynamics().ledger(state, work);
   ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
   numbers.assign(1, state.time());
-  for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
+  for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, work, numbers);
   for (const PlacedPoint& point : tracked_) add_vector(numbers, point.at(state));
   const VecX<double> sensors = simulation_->dynamics().sensor_values(state.time(), state, work);
   numbers.insert(numbers.end(), sensors.data(), sensors.data() + sensors.size());

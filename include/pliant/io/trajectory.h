@@ -51,7 +51,9 @@ class TrajectoryTable {
   std::vector<Column> part_columns(std::size_t part) const;
   std::vector<Column> joint_columns(std::size_t joint) const;
   std::vector<Column> total_columns() const;
-  void add_part(const State& state, std::size_t part, std::vector<double>& numbers) const;
+  void evaluate_row(const State& state, Workspace<double>& work, std::vector<double>& numbers) const;
+  void add_part(const State& state, std::size_t part, const Workspace<double>& work,
+                std::vector<double>& numbers) const;
 
   const Scene* scene_;
   Simulation* simulation_;

@@ -23,6 +23,11 @@ struct Counters {
     strain_points += o.strain_points;
     return *this;
   }
+  Counters operator-(const Counters& o) const {
+    return {jacobian_points - o.jacobian_points, rate_points - o.rate_points, mass_matrices - o.mass_matrices,
+            inertial_forces - o.inertial_forces, point_jets - o.point_jets,   surfaces - o.surfaces,
+            strain_points - o.strain_points};
+  }
 };
 
 }  // namespace pliant

@@ -320,8 +320,14 @@ PLIANT_INLINE void Clusters::commit(double end) {
 
 PLIANT_INLINE void Simulation::forget_counters() {
   step_counters_ = {};
+  forget_evaluations();
+}
+
+/// Sets the numbers of evaluations in the workspace to zero.
+PLIANT_INLINE void Simulation::forget_evaluations() {
   for (PartWorkspace<double>& w : work_.parts) w.counters = {};
   for (RigidWorkspace& w : work_.rigid) w.counters = {};
+  output_counters_ = {};
 }
 
 /// Adds the counters of a cluster, and records the velocities without inertia of its parts.

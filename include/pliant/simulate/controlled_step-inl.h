@@ -191,7 +191,7 @@ PLIANT_INLINE void Simulation::estimate_contact_error(const StepCounters& before
 /// otherwise a NumericalFailure, because the error exceeds the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   const std::string term =
-      dynamics_.diagnose(last_good_.time(), last_good_.q, last_good_.v, last_good_, output_work_);
+      dynamics_.diagnose(last_good_.time(), last_good_.q, last_good_.v, last_good_, work_);
   if (!term.empty()) throw NumericalFailure(term + " is not a finite number", last_good_.time());
   integrate();
   const VecX<double> none = VecX<double>::Zero(state_.q.size());

@@ -89,18 +89,18 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
-    StepContext start(dynamics_, state_, output_work_, step_counters_, 0, 0);
+    StepContext start(dynamics_, state_, work_, step_counters_, 0, 0);
     project_frames(start);
-    if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
+    if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, work_);
     switching_.engage(start, std::vector<bool>(model_.islands().size(), true));
     if (automatic) {
       choice_ = choose_integrator(dynamics_, *scale_, state_, stop);
       set_method(make_integrator(choice_.integrator));
     }
-    start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
+    start_energy_ = dynamics_.ledger(state_, work_).energy() - state_.work.sum();
     first_ = state_;
   });
-  for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
+  forget_evaluations();
   if (!scale_ || !model_.forms_clusters()) return;
   clusters_ = std::make_unique<Clusters>(*this);
   state_.step_memory.resize(model_.parts().size());
@@ -399,12 +399,19 @@ PLIANT_INLINE void Simulation::set_state(State state) {
 
 PLIANT_INLINE VecX<double> Simulation::sensors() {
   if (model_.sensors().empty()) return VecX<double>(0);
-  dynamics_.accelerations(state_.time(), state_.q, state_.v, state_, output_work_);
-  return dynamics_.sensor_values(state_.time(), state_, output_work_);
+  VecX<double> values;
+  evaluate_output([&](Workspace<double>& work) {
+    dynamics_.accelerations(state_.time(), state_.q, state_.v, state_, work);
+    values = dynamics_.sensor_values(state_.time(), state_, work);
+  });
+  return values;
 }
 
 PLIANT_INLINE Ledger Simulation::ledger() {
-  Ledger ledger = simulation::at_time(time(), [&] { return dynamics_.ledger(state_, output_work_); });
+  Ledger ledger;
+  evaluate_output([&](Workspace<double>& work) {
+    ledger = simulation::at_time(time(), [&] { return dynamics_.ledger(state_, work); });
+  });
   ledger.balance = ledger.energy() - start_energy_ - ledger.work.sum();
   return ledger;
 }
@@ -413,7 +420,7 @@ PLIANT_INLINE Counters Simulation::counters() const {
   Counters sum = absorbed_counters_;
   for (const PartWorkspace<double>& w : work_.parts) sum += w.counters;
   for (const RigidWorkspace& w : work_.rigid) sum += w.counters;
-  return sum;
+  return sum - output_counters_;
 }
 
 }  // namespace pliant

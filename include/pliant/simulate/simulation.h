@@ -78,8 +78,14 @@ class Simulation {
 
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
-  /// Returns the workspace of ledger(), for other evaluations of output. No step reads it.
-  Workspace<double>& output_workspace() { return output_work_; }
+  /// Calls evaluate(workspace) for output. The workspace is that of the steps: each step overwrites the
+  /// results, and no step reads them. counters() omits these evaluations.
+  template <class Evaluate>
+  void evaluate_output(Evaluate&& evaluate) {
+    const Counters before = counters();
+    evaluate(work_);
+    output_counters_ += counters() - before;
+  }
   /// The energy of the first state, J, to which the balance refers. A resumed run sets it.
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }
@@ -99,7 +105,7 @@ class Simulation {
   /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
   /// the order of time. Impulses as small as rounding errors are omitted.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
-  /// Returns the numbers of evaluations by kind (part/counters.h), summed over parts.
+  /// Returns the numbers of evaluations by kind (part/counters.h) in steps, summed over parts.
   Counters counters() const;
   /// Returns the names of the parameters ("part.parameter") and of the velocities of frames ("part.omega.x")
   /// that had no inertia in at least one step and were fixed in that step.
@@ -118,6 +124,7 @@ class Simulation {
   void advance_clusters(double end);
   void absorb(Simulation& cluster);
   void forget_counters();
+  void forget_evaluations();
   void set_method(std::unique_ptr<Integrator> method);
   StepError try_step();
   void estimate_contact_error(const StepCounters& before, StepError& result);
@@ -149,7 +156,7 @@ class Simulation {
   Controller controller_;
   State state_, last_good_, attempt_start_;
   State first_;  ///< the state at the start, or the state of the last set_state()
-  Workspace<double> work_, output_work_;
+  Workspace<double> work_;
   StepCounters step_counters_;
   ProgressWatch watch_;
   double interval_ = 0;  ///< interval of the watch, s
@@ -157,6 +164,7 @@ class Simulation {
   AssemblyReport assembly_;
   std::vector<bool> without_inertia_;  ///< whether each velocity had no inertia in at least one step
   Counters absorbed_counters_;         ///< evaluations of clusters
+  Counters output_counters_;           ///< evaluations in work_ by evaluate_output()
   double start_energy_ = 0;
 };
 
