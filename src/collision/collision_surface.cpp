@@ -33,13 +33,14 @@ constexpr double kSameHeight = 1e-6;
 /// Points nearer to each other than kSamePlace, in sizes, are merged. Two points that are not merged are on
 /// one flat face if the middle of their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
-/// The test whether a sample point is already the lowest point uses a stencil of kCorner spacings.
-/// Differences of heights up to kHeightRounding, in sizes, are ignored as rounding errors. They would
-/// otherwise start a search on a flat face.
+/// The test whether a sample point is already the lowest point uses a stencil with a radius of kCorner, in
+/// units of CollisionSurface::spacing_ (on a ball pattern, twice the angle between neighbouring sample
+/// points). Differences of heights up to kHeightRounding, in sizes, are ignored as rounding errors. They
+/// would otherwise start a search on a flat face.
 constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
 /// A stencil whose second difference of heights is smaller than this, in sizes, is flat.
 constexpr double kFlatStencil = 1e-13;
-/// The search ends at this size of its stencil, in spacings.
+/// The search ends at this radius of its stencil, in units of CollisionSurface::spacing_.
 constexpr double kMinStencil = 1e-8;
 /// A direction is near a pole if the sine of its angle to the z axis is at most this. Latitude and longitude
 /// are not used near a pole.
@@ -68,9 +69,9 @@ class Chart {
       e2_ = start.normalized().cross(e1_);
     }
   }
-  /// Returns the largest distance of the search from the sample point in each coordinate, in spacings
-  /// (CollisionSurface::spacing_). In longitude it is 2, because circles of latitude are shorter than great
-  /// circles.
+  /// Returns the largest distance of the search from the sample point in each coordinate, in units of
+  /// CollisionSurface::spacing_. In the second coordinate of a chart of latitude and longitude it is 2,
+  /// because circles of latitude are shorter than great circles.
   Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
   Vec3<double> place(const Eigen::Vector2d& x) const {
     if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;

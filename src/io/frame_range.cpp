@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-// Returns the integer >= 0 that the whole text denotes, or nothing.
+// Returns the integer >= 0 that the whole text denotes, or std::nullopt.
 std::optional<std::int64_t> number(const std::string& text) {
   std::int64_t value = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

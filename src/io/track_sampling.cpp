@@ -5,7 +5,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kLongest = 0.02;  // distance between two recorded states, in sizes of the part
+// The largest movement of a point without a new recorded state, in sizes of the part.
+constexpr double kLongest = 0.02;
 
 }  // namespace
 

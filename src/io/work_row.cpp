@@ -11,7 +11,7 @@ struct Count {
   long StepCounters::*of_steps;
   long Counters::*of_parts;
   const char* meaning;
-  bool repeats = false;  ///< whether a resumed run does this work again, so that it has no column
+  bool repeats = false;  ///< whether a resumed run does this work again, so that the count has no column
 
   long& in(RunWork& work) const { return of_steps != nullptr ? work.steps.*of_steps : work.parts.*of_parts; }
   long in(const RunWork& work) const {
@@ -29,8 +29,10 @@ constexpr std::array<Count, 18> kCounts{{
     {"impacts", &StepCounters::impacts, nullptr, "impacts whose time was located"},
     {"sequential_impacts", &StepCounters::sequential_impacts, nullptr, "impacts in sequences"},
     {"contact_sweeps", &StepCounters::contact_sweeps, nullptr, "sweeps over contacts"},
-    {"contact_fallbacks", &StepCounters::contact_fallbacks, nullptr, "searches with compliant contacts"},
-    {"contact_cutoffs", &StepCounters::contact_cutoffs, nullptr, "steps at the limit of contact rounds"},
+    {"contact_fallbacks", &StepCounters::contact_fallbacks, nullptr,
+     "searches for contact impulses repeated with compliant contacts"},
+    {"contact_cutoffs", &StepCounters::contact_cutoffs, nullptr,
+     "steps that reached a limit of contact rounds or of located impacts"},
     {"jacobian_points", nullptr, &Counters::jacobian_points, "points whose Jacobian was evaluated"},
     {"rate_points", nullptr, &Counters::rate_points, "points whose Jdot qs_dot was evaluated"},
     {"mass_matrices", nullptr, &Counters::mass_matrices, "mass matrices"},

@@ -13,8 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// The scene itself uses at most this share of the largest stable K. The remaining share is for stiffnesses
-/// that the user adds.
+/// The K of a motion is its stiffness divided by its effective mass, 1/s^2. The K of the scene counts as at
+/// most this share of the largest stable K, so that the user can add stiffnesses.
 constexpr double kMaxPresentShare = 0.75;
 /// A stiffness is at most this share of the largest stable stiffness, because the effective mass is an
 /// estimate.
@@ -22,7 +22,8 @@ constexpr double kStiffnessShare = 0.8;
 /// If a damping is reduced, it becomes this share of the largest stable damping, so that a stiffness can be
 /// added.
 constexpr double kDampingShare = 0.5;
-/// Steps of h resolve a motion with K h^2 and D h up to these numbers.
+/// Steps of length h resolve a motion with K h^2 and D h up to these numbers. D is the damping divided by the
+/// effective mass, 1/s.
 constexpr double kResolvedStiffness = 0.25, kResolvedDamping = 0.5;
 /// Number of halvings of each search.
 constexpr int kHalvings = 60;

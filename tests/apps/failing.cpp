@@ -100,7 +100,9 @@ TEST_CASE("a run of a soft body at rest is complete, although all its energies a
     CHECK(monitors_with(place, "at_rest", method)["balance_share"] == 0);
 }
 
-TEST_CASE("an oscillation that grows slowly ends a run when its error is half of its energy") {
+TEST_CASE(
+    "an oscillation that grows slowly ends a run when the balance error is half of the energy that could "
+    "move") {
   const TestFolder place;
   const Result result = run(place, "grows_slowly");
   CHECK(result.code == 5);

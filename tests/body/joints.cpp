@@ -18,7 +18,7 @@ using test::Draws;
 namespace {
 
 /// Compares C, C_dot, bias, C_x and gap() of a joint with finite differences, for points that move as
-/// x + v t + a t^2 / 2. The bias is then C_ddot, because a is the acceleration of the points.
+/// x + v t + a t^2 / 2. evaluate() receives these accelerations a, so that the bias is C_ddot.
 template <class F>
 void check_laws(const F& formula, std::uint64_t seed) {
   constexpr int kPoints = F::first + F::second;

@@ -81,8 +81,8 @@ Nearest nearest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return best;
 }
 
-/// Places the parts at random so that samples of their surfaces are about `apart` (m) apart. Returns the
-/// distance of these samples.
+/// Places the parts at random so that the nearest sample points of their surfaces are about `apart` (m)
+/// apart. Returns the distance of these two points.
 double place_near(Pair& pair, Draws& draws, double apart) {
   const Eigen::Quaterniond R_a = random_rotation(draws), R_b = random_rotation(draws);
   const Eigen::Matrix3Xd a = R_a.toRotationMatrix() * surface_points(pair.part_a),

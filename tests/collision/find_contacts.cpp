@@ -141,7 +141,7 @@ TEST_CASE("an ellipsoid and a ball: the error of the gap is of second order, for
   }
 }
 
-TEST_CASE("the nearest point of a stretched ball is the global minimum", "[contact]") {
+TEST_CASE("the nearest point of a stretched ball is the global minimum of the distance", "[contact]") {
   Draws draws(13);
   for (int trial = 0; trial < 300; ++trial) {
     Mat3<double> M;

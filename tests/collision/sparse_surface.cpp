@@ -20,13 +20,15 @@ namespace {
 
 constexpr int kResolution = 6;
 constexpr double kAnySize = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kDense = 24 * kResolution * kResolution + 2;  // vertices without wider cells
+/// Number of vertices of a surface none of whose cells has been widened.
+constexpr Eigen::Index kDense = 24 * kResolution * kResolution + 2;
 
 struct Kind {
   std::string shape;
   std::vector<std::string> links;
-  std::map<std::string, double> rest, dynamic;  // dynamic: values at which surfaces are compared
-  Eigen::Index vertices;                        // number of vertices of the sparse surface
+  /// dynamic: values of the dynamic parameters at which the surfaces are compared.
+  std::map<std::string, double> rest, dynamic;
+  Eigen::Index vertices;  // number of vertices of the sparse surface
 };
 
 /// A body with one part of this kind.
@@ -53,8 +55,8 @@ double volume(const Part& part, const Surface& surface, const ParameterValues<do
 
 TEST_CASE("a sparse surface covers the same surface with fewer vertices", "[collision]") {
   const int n = 2 * kResolution;
-  const Eigen::Index rings = 4 * n;            // vertices around a shape
-  const Eigen::Index cap = (n - 1) * (n - 1);  // vertices inside an end face
+  const Eigen::Index rings = 4 * n;            // number of vertices on the edge of an end face
+  const Eigen::Index cap = (n - 1) * (n - 1);  // number of vertices inside an end face
   const std::vector<Kind> kinds{
       {"box", {}, {{"a1", 0.3}}, {}, 8},
       {"box", {}, {{"a1", 0.3}}, {{"a1", 0.4}, {"a3", 2}}, 8},
@@ -65,7 +67,8 @@ TEST_CASE("a sparse surface covers the same surface with fewer vertices", "[coll
       // The bend is oblique to the sides. The sides become cones, whose generators are straight.
       {"box", {"bend"}, {{"bend.direction", 0.7}}, {{"bend.angle", 0.9}}, 4 * (n + 1)},
       {"box", {"twist"}, {}, {{"twist.angle", 1.1}}, kDense},
-      // Triangles without area at the tip contain no points.
+      // The taper collapses the triangles at one end to zero area. sparse_surface() ignores such triangles
+      // when it tests whether points are on the surface.
       {"cylinder", {"taper"}, {{"taper.tx", 1}, {"taper.ty", 1}}, {}, 2 * (rings + cap)},
       {"box", {"taper", "twist"}, {{"taper.tx", 1}, {"taper.ty", 0}, {"twist.angle", 1.5}}, {}, kDense},
       {"cylinder", {}, {}, {}, 2 * (rings + cap)},
@@ -89,7 +92,7 @@ TEST_CASE("a sparse surface covers the same surface with fewer vertices", "[coll
   }
 }
 
-TEST_CASE("the cells of a sparse surface are not larger than wanted", "[collision]") {
+TEST_CASE("the cells of a sparse surface are not larger than the given size", "[collision]") {
   const One one({"box", {}, {{"a1", 0.1}, {"a2", 0.5}, {"a3", 1.5}}, {}, 0});
   const Part& box = one.part();
   auto vertices = [&](double cell) { return sparse_surface(box, kResolution, cell).material().size(); };

@@ -71,7 +71,8 @@ TEST_CASE("errors of contact follow the tolerance of contact", "[contact]") {
     const Outcome rough = outcome("box", tolerance);
     CHECK(rough.counters.worst_residual.is_allowed());
     CHECK(rough.counters.worst_overlap.is_allowed());
-    CHECK(rough.counters.contact_residual <= tolerance * (1 + 9.81 * kStep));  // at the first impact
+    // 1 + 9.81 kStep is the largest possible speed of the first impact, m/s.
+    CHECK(rough.counters.contact_residual <= tolerance * (1 + 9.81 * kStep));
     CHECK(rough.counters.contact_overlap <= 1e-3 * tolerance * kHalf + 1e-10 * kHalf);
     CHECK(error(rough) < tolerance * kHalf);
     CHECK(error(rough) < 0.1 * last_error);

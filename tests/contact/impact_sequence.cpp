@@ -29,7 +29,7 @@ struct Row {
   int moving = 1;
   double restitution = 1;
   ImpactOrder impacts = ImpactOrder::sequential;
-  /// Number of balls at rest far away. With more than eight parts, impacts are not located.
+  /// Number of balls at rest far away. With more than eight parts, the times of impacts are not located.
   int bystanders = 0;
 
   int size() const { return static_cast<int>(densities.size()); }

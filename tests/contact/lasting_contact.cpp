@@ -98,8 +98,8 @@ TEST_CASE("the transitions from sliding to rest and to rolling are resolved with
 }
 
 TEST_CASE(
-    "the error of a ball that rolls down another ball is within the tolerance, with steps in proportion "
-    "to the square root of the tolerance",
+    "the error of a ball that rolls down another ball is within the tolerance, with step lengths in "
+    "proportion to the square root of the tolerance",
     "[error][contact]") {
   const double angle = angle_on_hill(0.5);
   auto rolling_steps = [&](double tolerance) {
@@ -221,7 +221,7 @@ TEST_CASE("with many parts that may meet the steps are short and counted as unco
   MultiBody body;
   body.contact.active = true;
   body.contact.friction = 0.5;
-  body.contact.interval = 1;  // intervals do not limit the steps
+  body.contact.interval = 1;  // s; no interval of clusters ends during the runs, which would end a step
   body.contact.planes.emplace_back().name = "floor";
   for (int i = 0; i < 9; ++i)
     body.add<Primitive<Box>>("box" + std::to_string(i))

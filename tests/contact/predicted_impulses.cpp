@@ -139,13 +139,13 @@ TEST_CASE("impulses are predicted for bodies that roll, and not for bodies at re
   CHECK(contacts[1].predicted.z() == Approx(0.005 * kGravity * body.parts()[1]->total_mass()));
 }
 
-TEST_CASE("the reaction of an impact is not predicted", "[contact]") {
+TEST_CASE("an impact on a resting ball and the reaction of the floor are not predicted", "[contact]") {
   MultiBody body;
   floor_with_friction(body, 0.5);
   const char* names[] = {"lower", "upper"};
   for (const int i : {0, 1})
     body.add<Primitive<Sphere>>(names[i]).rest({{"r", 0.1}}).place({0, 0, 0.1 + 0.2 * i + 0.3 * i});
-  // With nine more balls, more than eight parts can move, and impacts are not located.
+  // With nine more balls, more than eight parts can move, and the times of impacts are not located.
   for (int i = 0; i < 9; ++i)
     body.add<Primitive<Sphere>>("other" + std::to_string(i)).rest({{"r", 0.1}}).place({1.0 + i, 0, 0.1});
   Simulation simulation(body, "rk4");
@@ -200,7 +200,7 @@ TEST_CASE("the ledger is balanced when bodies with predicted impulses lose conta
     MultiBody body;
     floor_with_friction(body, 0.8);
     body.contact.planes[0].off = 0.253;
-    for (int i = 0; i < 9; ++i) {  // with more than eight moving parts, impacts are not located
+    for (int i = 0; i < 9; ++i) {  // with more than eight moving parts, the times of impacts are not located
       Part& ball = body.add<Primitive<Ellipsoid>>("ball" + std::to_string(i), 1000.0);
       ball.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place({0.5 * i, 0, 0.1});
       ball.velocity({0.2, 1, 0}, {-10, 2, 0});

@@ -1,5 +1,5 @@
 // Slender and ruled solids on a plane, with length to thickness of 10, 100 and 1000: they come to rest when
-// they are dropped, roll at their speed, and topple in the plane of symmetry of the scene.
+// they are dropped, roll at a constant speed, and topple in the plane of symmetry of the scene.
 #include "catch.h"
 
 #include <cmath>
@@ -80,7 +80,7 @@ TEST_CASE("slender solids that are dropped on a plane at an angle come to rest o
       }
 }
 
-TEST_CASE("slender solids of revolution roll on a plane at their speed", "[contact]") {
+TEST_CASE("slender solids of revolution roll on a plane at a constant speed", "[contact]") {
   for (const Kind& kind : kinds())
     for (const double r : {0.05, 5e-3, 5e-4}) {
       if (!kind.rolls) continue;
@@ -129,8 +129,8 @@ TEST_CASE("slender solids topple in the plane in which they lean", "[contact]") 
 }
 
 TEST_CASE(
-    "slender rods that are bent, tapered or twisted fall on a plane and come to rest, or roll and rock there "
-    "at their energy",
+    "slender rods that are bent, tapered or twisted fall on a plane and come to rest, or roll and rock "
+    "there, with a small balance error",
     "[contact][long]") {
   struct Rod {
     const char *shape, *link, *parameter;

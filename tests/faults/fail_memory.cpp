@@ -1,6 +1,7 @@
-// A library for LD_PRELOAD. From a certain call on after the start of main(), all calls that allocate memory
-// fail. PLIANT_FAIL_MEMORY_FROM: number of this call. PLIANT_COUNT_MEMORY: name of the file to which the
-// number of all calls is written at the end of the process.
+// A library for LD_PRELOAD. It counts the calls that allocate memory, and all calls from a given number on
+// fail. PLIANT_FAIL_MEMORY_FROM: number of the first call that fails, counted from the start of main().
+// PLIANT_COUNT_MEMORY: name of the file to which the number of calls during main() is written when main()
+// returns.
 #include <atomic>
 #include <cerrno>
 #include <cstddef>

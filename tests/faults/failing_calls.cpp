@@ -56,23 +56,23 @@ struct Fault {
   std::string file;  ///< the name of the file
 };
 
-/// Returns a description of the fault if a run that could not lock a file ended with the wrong code or
-/// message. Otherwise the result is empty. Only the lock of the folder is necessary.
+/// Returns a description of the wrong exit code or message of a run that could not lock a file, or an empty
+/// text. Only the lock of the folder is necessary.
 std::string wrong_without_lock(const std::string& file, int code, const std::string& output) {
   if (file == "pliant.lock")
     return code == 7 && has(output, "does not lock files") ? "" : "the lock is not named: " + output;
   return code == 0 && has(file, ".part-") ? "" : "code " + std::to_string(code) + ": " + output;
 }
 
-/// Returns a description of the fault if a run in which a call failed with `error` ended with the wrong code.
-/// Otherwise the result is empty. output: the text of the program.
+/// Returns a description of the wrong exit code of a run in which a call failed with `error`, or an empty
+/// text. output: the text of the program.
 std::string wrong_code(int error, int code, const std::string& output) {
   if (error == EINTR && code != 0) return "the program did not repeat the interrupted call: " + output;
   return code == 0 || code == 7 ? "" : "code " + std::to_string(code) + ": " + output;
 }
 
-/// Makes one call of a run fail, and resumes the run. Returns a description of the first fault, or an empty
-/// text.
+/// Makes one call of a run fail, and resumes the run. Returns a description of the first wrong result, or an
+/// empty text.
 std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
                             const std::map<std::string, std::string>& unbroken) {
   fs::remove_all(place / "broken");
@@ -92,7 +92,7 @@ std::string fail_and_resume(const FaultyRun& place, const Fault& fault,
 }
 
 /// Makes one call fail while the run in the folder "killed" is resumed, and resumes the run again. Returns a
-/// description of the first fault, or an empty text.
+/// description of the first wrong result, or an empty text.
 std::string fail_while_resumed(const FaultyRun& place, const Fault& fault,
                                const std::map<std::string, std::string>& unbroken) {
   place.copy("killed", "broken");

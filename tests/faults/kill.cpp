@@ -10,7 +10,7 @@ using namespace faults;
 
 namespace {
 
-/// Breaks a run at a call and resumes it. Returns a description of the first fault, or an empty
+/// Kills a run at a call and resumes the run. Returns a description of the first wrong result, or an empty
 /// text.
 std::string kill_and_resume(const FaultyRun& place, long call,
                             const std::map<std::string, std::string>& unbroken) {

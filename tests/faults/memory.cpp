@@ -22,7 +22,8 @@ int run_without_memory(const FaultyRun& place, const std::string& run, long from
                        std::to_string(from));
 }
 
-/// Checks `points` runs in which memory is exhausted from allocations spread over the whole run.
+/// Checks `points` runs. In each run, all allocations from a certain number on fail. These numbers are spread
+/// over the whole run.
 void check_exhaustion(const FaultyRun& place, long points) {
   REQUIRE(place.run("whole") == 0);
   const auto whole = place.files("whole");

@@ -295,7 +295,7 @@ TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sande
       const Sheet sheet{12 * (1 - nu * nu), nu, 1};
       const LinearBending bending(mesh, sheet, 1);
       const VecX<double> area = sphere_areas(mesh), d = harmonic_fields(mesh, n).col(along ? 1 : 0);
-      // The column contains grad Y/n: int |grad Y|^2 = b int Y^2.
+      // If `along` is true, d contains grad Y / n; int |grad Y|^2 = b int Y^2.
       const double square = thrice(area).dot(d.cwiseAbs2()) * (along ? n * n / b : 1);
       const double scale = along ? 1.0 / n : 1;
       const VecX<double> x = with_balanced_edges(

@@ -207,7 +207,7 @@ TEST_CASE("joints close as accurately as the tolerance asks", "[error]") {
     part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.5, 0.2, 0}).velocity({0, 0.6, 0}, {0, 0, 2});
     body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
   };
-  constexpr double opens = 0.5, closes = 2;  // s: before and after the joint has closed
+  constexpr double opens = 0.5, closes = 2;  // s; the joint closes between these times
   for (const std::string& method : controlled_integrators()) {
     const bool low = make_integrator(method)->order() == 2;
     for (const double end : {opens, closes}) {
@@ -263,13 +263,14 @@ TEST_CASE("a stiff shell that spins is integrated to the tolerance, with few cha
   }
 }
 
-TEST_CASE("the trials of a choice can be stopped, and have a limited number of evaluations", "[error]") {
+TEST_CASE("the trials for the choice of a method can be stopped, and have a limited number of evaluations",
+          "[error]") {
   MultiBody body;
   test::tumbling_solid(body);
   int calls = 0;
   CHECK_THROWS_AS(Simulation(body, kAutomatic, 1, 1e-6, [&] { return ++calls > 10; }), ChoiceStopped);
   CHECK(calls == 11);
-  // The trial of one of the candidates takes at least 48 steps if it is not limited.
+  // If nothing stops them, the trials of the candidates have at least 96 steps in all.
   MultiBody whole;
   test::tumbling_solid(whole);
   int unlimited = 0;

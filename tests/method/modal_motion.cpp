@@ -289,8 +289,10 @@ struct MethodCase {
 
 }  // namespace
 
-TEST_CASE("methods agree at their orders on parts with local deformation, free and on a joint",
-          "[modal][methods][joints][long]") {
+TEST_CASE(
+    "each method converges with its order to a fine rk4 solution, for parts with local deformation, free and "
+    "on a joint",
+    "[modal][methods][joints][long]") {
   for (const Basis basis : {Basis::nodes, Basis::polynomial, Basis::modes})
     for (const bool hanging : {false, true}) {
       const State exact = end_of(basis, hanging, "rk4", 8000);
@@ -401,7 +403,8 @@ TEST_CASE("modes give identical bits with any number of threads, and after a cop
 }
 
 TEST_CASE(
-    "the largest stable step of modes is unlimited in free flight, and set by the highest mode on a spring",
+    "the largest stable step of a part with modes is unlimited in free flight; if a spring pulls the part, "
+    "the highest mode limits the step",
     "[modal]") {
   for (const bool pulled : {false, true}) {
     MultiBody body;

@@ -110,7 +110,7 @@ TEST_CASE("mass points of a distribution are exact for all values of dynamic par
   }
 }
 
-TEST_CASE("the function 1 gives the inertia of equal density", "[mass][long]") {
+TEST_CASE("the distribution mu(u) = 1 gives the inertia of a part without a distribution", "[mass][long]") {
   auto inertia_of = [](bool distributed) {
     const auto part = make_part("part", "superellipsoid", {"taper", "bend"}, 1000);
     part->rest({{"eps1", 0.4}, {"eps2", 1.4}, {"taper.tx", 0.5}, {"bend.angle", 0.6}});

@@ -121,7 +121,7 @@ TEST_CASE("weld: two parts tumble as one composite part", "[joints]") {
   CHECK((simulation.state().v.head<6>() - reference.state().v.head<6>()).norm() <= 1e-9);
 }
 
-TEST_CASE("slider, line and plane: the free directions fall freely", "[joints]") {
+TEST_CASE("slider, line and plane: a part falls freely along the free directions", "[joints]") {
   const Vec3<double> d = Vec3<double>(1, 0.5, -1).normalized(), g(0, 0, -9.81);
   for (const char* type : {"slider", "line", "plane"})
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
@@ -225,7 +225,8 @@ TEST_CASE("hinges and welds close from any rotation, half turns included", "[joi
     }
 }
 
-TEST_CASE("a small fixed part does not scale down an orientation error", "[joints]") {
+TEST_CASE("the size of the moving part scales the orientation error of a weld to a small fixed part",
+          "[joints]") {
   MultiBody body;
   body.gravity.setZero();
   Part& peg = test::add(body, "peg", "sphere", {}, 1000);
@@ -430,7 +431,7 @@ TEST_CASE("N48: closed joints receive their impulses when a string, or a rod in 
     Part& bar = body.add(make_part("bar", "ellipsoid", {}, 1000));
     bar.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}}).place({0, 0, -0.5}).velocity({1, 0, 0}, {0, -2, 0});
     body.ball("pivot", point(bar, kPi / 2, 0), world(0, 0, 0));
-    // The rope is as long as the distance from its anchor to the end of the bar at 0.2 s.
+    // The rope (string or rod) is as long as the distance from its anchor to the end of the bar at 0.2 s.
     const double turned = 2 * 0.2;
     const double length =
         (Vec3<double>(std::sin(turned), 0, -std::cos(turned)) - Vec3<double>(-0.5, 0, -1)).norm();

@@ -63,7 +63,7 @@ void chain(MultiBody& body, int links, double turn = 0) {
   }
 }
 
-/// Returns the lowest observed order, between the two finest steps, that is accepted for order p.
+/// Returns the lowest observed order that is accepted for a method of order p.
 double min_order(int p) {
   return p <= 5 ? p - 0.1 : p - 0.5;
 }

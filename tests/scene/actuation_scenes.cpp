@@ -314,8 +314,9 @@ TEST_CASE("faulty names in formulas are reported with the names that exist", "[a
   CHECK_THAT(messages_of(hinged_bar("", R"json("sensors ": [])json")), has_text("sensors"));
 }
 
-TEST_CASE("loads that read the state connect parts, and other scenes have no coordinates",
-          "[actuation][skip]") {
+TEST_CASE(
+    "a load connects its part with a part whose state it reads, and adds no joint coordinates to the model",
+    "[actuation][skip]") {
   Run run(
       R"json({"parts": [{"name": "a", "shape": "sphere"}, {"name": "b", "shape": "sphere", "position": [9, 0, 0]},
                             {"name": "c", "shape": "sphere", "position": [19, 0, 0]}],

@@ -291,7 +291,8 @@ TEST_CASE("a sleeping body that is hit still rests on the fixed body below it", 
   CHECK(lowest > 0.1 - 1e-5);
 }
 
-TEST_CASE("a part of a state returns to the whole state unchanged", "[clusters]") {
+TEST_CASE("a state does not change if the data of some parts are extracted and inserted again",
+          "[clusters]") {
   MultiBody body;
   add_floor(body, 0.5, 0);
   body.contact.sleep = Sleep{1e-3, 0.05};

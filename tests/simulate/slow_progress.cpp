@@ -12,7 +12,8 @@ using namespace pliant;
 
 namespace {
 
-/// Adds n steps of equal length h (s) to a watch, from the time t (s) on. Returns the last report.
+/// Adds n steps of equal length h (s) to a ProgressWatch, from the time t (s) on. Returns the last report.
+/// interval: the whole time that the simulation is to advance, s. work: the counters of each step.
 std::optional<SlowProgress> add_steps(ProgressWatch& watch, double& t, double h, long n, double interval,
                                       const StepCounters& work = {}) {
   std::optional<SlowProgress> report;
@@ -46,8 +47,9 @@ void add_ball(MultiBody& body, double height, double velocity, double restitutio
 
 }  // namespace
 
-TEST_CASE("many steps in a tiny share of the interval are reported, with their number and work",
-          "[failure]") {
+TEST_CASE(
+    "many steps that advance by a tiny share of the requested time are reported, with their number and work",
+    "[failure]") {
   ProgressWatch watch;
   double t = 0;
   StepCounters work;

@@ -114,7 +114,9 @@ TEST_CASE("block factor: a chain and a tree have no fill-in", "[block_factor]") 
   }
 }
 
-TEST_CASE("block factor: the remaining full block is dense if it has at least 18 rows", "[block_factor]") {
+TEST_CASE(
+    "block factor: the last nodes form one dense matrix if all are neighbours and have at least 18 rows",
+    "[block_factor]") {
   auto all_pairs = [](int first, int last) {
     std::vector<std::pair<int, int>> edges;
     for (int v = first; v < last; ++v)

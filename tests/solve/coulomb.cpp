@@ -46,7 +46,8 @@ TEST_CASE("the impulse of a contact obeys Coulomb's law", "[coulomb]") {
   CHECK(slid > 1000);
 }
 
-TEST_CASE("a contact sticks where its response is nearly singular", "[coulomb]") {
+TEST_CASE("a contact sticks if an impulse inside its cone stops it, also if W is nearly singular",
+          "[coulomb]") {
   Draws draws(5);
   for (int trial = 0; trial < 2000; ++trial) {
     const Vec3<double> r = draws.vector(1);

@@ -54,7 +54,7 @@ TEST_CASE("a live run plays, pauses, makes single steps and resets") {
   wait_until(run, [](const Snapshot& now) { return now.state.time() == 0; });
 }
 
-TEST_CASE("a live run samples its tracks at the end of every interval, and again after a reset") {
+TEST_CASE("a live run samples its tracks at time 0 and about every 1/60 s, and again after a reset") {
   Diagnostics diagnostics;
   const std::unique_ptr<Scene> scene =
       parse_scene("scene", R"({"gravity": [0, 0, -1], "time": {"step": 0.001, "integrator": "rk4"},

@@ -64,8 +64,8 @@ std::string jelly_scene(const std::string& time) {
     "local": {"resolution": 2, "laws": [{"type": "neo_hookean", "E": 20000, "nu": 0.3}], "alpha": 1}}]})";
 }
 
-/// Drags a part to and fro between the intervals 20 and 50, and again between 70 and 90. k: number of the
-/// next interval.
+/// The actions of a user before interval k; an interval is one call of LiveSimulation::advance(). They grab a
+/// part before the intervals 20 and 70, move the mouse, and release the part before the intervals 50 and 90.
 void drag(LiveSimulation& live, const std::string& part, int k) {
   const Part& dragged = *live.scene().body.find(part);
   if (k == 20 || k == 70) {

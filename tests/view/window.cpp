@@ -94,7 +94,8 @@ Report last_report(const std::string& printed) {
   return report;
 }
 
-/// Runs a saved scene and returns the position of the point of its last spring at a time, s, m.
+/// Runs a saved scene and returns the position (m) of the point of its last spring at a time (s). Sets `part`
+/// to the name of the part of this point.
 Vec3<double> replayed_point(const std::filesystem::path& file, double time, std::string& part) {
   Diagnostics diagnostics;
   const std::unique_ptr<Scene> scene = read_scene(file.string(), {}, diagnostics);

@@ -39,7 +39,7 @@ VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<c
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// Computes q <- q (+) h x for one part, with its velocities x in a group. q_d changes by h times the
-/// response to the impulses that cause the velocities x, as in scatter_velocity().
+/// velocities of the local coordinates that scatter_velocity() gives a part at rest.
 void advance_part_in_group(const PartModel& m, const PartWorkspace<double>& w,
                            const Eigen::Ref<const VecX<double>>& x, double h, VecX<double>& q);
 

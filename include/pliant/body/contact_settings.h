@@ -85,7 +85,7 @@ struct Sleep {
 /// How impacts that happen at the same time are resolved.
 enum class ImpactOrder {
   simultaneous,  ///< Newton's law of impact holds at all contacts at once
-  sequential     ///< impacts of two bodies follow each other, the fastest first (contact/impact_sequence.h)
+  sequential     ///< pairs of bodies collide one after another, the fastest first (contact/impact_sequence.h)
 };
 
 /// Smallest and largest value of ContactSettings::tolerance.

@@ -1,4 +1,4 @@
-// The choice of the points that carry a material frame.
+// The choice of the points that define a material frame.
 #pragma once
 
 #include <array>

@@ -117,7 +117,7 @@ PLIANT_INLINE Drive& MultiBody::drive(std::string name, const Joint& coordinate,
   drive->on.kind = Signal::Kind::coordinate;
   drive->on.coordinate = &coordinate;
   drive->on.index = row;
-  drive->angle = row == 0 && coordinate.type() != std::string(SliderPosition::name);  // not a swing
+  drive->angle = row == 0 && coordinate.type() != std::string(SliderPosition::name);  // rows 1, 2: swing
   drives_.push_back(std::move(drive));
   return *drives_.back();
 }

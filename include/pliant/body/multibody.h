@@ -85,7 +85,8 @@ class MultiBody {
   JointSolver joint_solver;
   ContactSettings contact;
   /// Rate of stops, 1/s. No step crosses a multiple of 1 / stop_rate. 0: steps may end at any time. Each
-  /// multiple is a kink. A load that changes at a multiple then has no influence on earlier steps.
+  /// multiple is a kink (Model::next_kink). A load that changes at a multiple then has no influence on
+  /// earlier steps.
   double stop_rate = 0;
 
   /// Adds a part. Returns a reference to the part, which is valid as long as the MultiBody exists. Throws

@@ -33,8 +33,8 @@ inline constexpr std::array<const char*, kWorks> kWorkNames{
 enum class JointMode : std::int8_t {
   off,      ///< outside its times on ... off: no force
   closing,  ///< open: Baumgarte's equation closes the joint
-  closed,   ///< C = 0 holds; a string is taut
-  slack     ///< a string with C > 0: no force
+  closed,   ///< C = 0; for a one-sided joint: a taut string, or a coordinate at its limit
+  slack     ///< only for one-sided joints: C > 0, or C_dot > 0 at C = 0; no force
 };
 
 /// A contact of the last step. Its force gives the start value of the contact impulse in the next step (warm
@@ -46,8 +46,8 @@ enum class JointMode : std::int8_t {
 struct CachedContact {
   std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< position of the contact, m, frame of part a
-  /// Mean force on part a, N, world, in the last step; in the second half of a step that was repeated as two
-  /// half steps.
+  /// Mean force on part a, N, world, in the last step. If the step was repeated in halves or thirds
+  /// (contact/step_doubling-inl.h): in the last half or third.
   Vec3<double> force;
   /// Whether this force acted during the whole step: the contact rested, and no impact happened at the bodies
   /// that contacts connect with this contact.

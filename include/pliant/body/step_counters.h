@@ -37,9 +37,10 @@ struct StepCounters {
   /// Impacts in sequences (ImpactOrder::sequential); pairs that approach equally fast are one impact.
   long sequential_impacts = 0;
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s
-  double contact_overlap = 0;   ///< largest overlap after the last separation of an accepted step, m
-  /// Of accepted steps, in units of the tolerances: the worst residual and the worst overlap after the last
-  /// separation. These include the overlaps of bodies that overlapped at time 0 and are not yet separated.
+  double contact_overlap = 0;   ///< largest overlap, m, that accepted steps left after separating the parts
+  /// Of accepted steps: the residual, and the overlap after the parts were separated, whose ratio of value to
+  /// tolerance is largest. The overlaps of bodies that overlapped at time 0 and are not yet separated count,
+  /// too.
   ContactViolation worst_residual{}, worst_overlap{};
 
   /// Adds counts, and keeps the larger errors of contact.

@@ -46,7 +46,7 @@ struct PartWorkspace {
   /// For a part without joints: numbers of the dynamic parameters that a limit pushes. For parts in islands:
   /// ConstraintWorkspace::pushed.
   std::vector<int> pressed;
-  Counters counters;  ///< how often the kernels of the part ran
+  Counters counters;  ///< numbers of quantities that were evaluated (part/counters.h)
 
   /// Returns M: RigidMass::inertia.M of a rigid part, else inertia.M.
   const MatX<S>& M() const {

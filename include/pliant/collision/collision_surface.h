@@ -89,7 +89,7 @@ class CollisionSurface {
   };
   const Samples& samples() const;
   /// Minimises field.descent() from sample point i. The search stays within one spacing_ of this point in
-  /// each coordinate, within two in longitude.
+  /// each coordinate, but within two in the second coordinate of a chart of latitude and longitude.
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;

@@ -58,9 +58,9 @@ class ContactFinder {
   /// The other side must be a part, a plane or a flat obstacle (ObstacleMesh::is_flat).
   bool is_smooth(const Contact& contact) const;
   /// Returns a contact with a plane, moved to the state and time of the last call of find(). Side a keeps its
-  /// material point; x, gap and prescribed_velocity change. Returns nothing if the contact is not with a
-  /// plane, if the plane does not act, or if the part has no support function. Also returns nothing for a
-  /// part without nearly flat regions, because its contact points are functions of the state.
+  /// material point; x, gap and prescribed_velocity change. Returns std::nullopt if the contact is not with
+  /// a plane, if the plane does not act, or if the part has no support function. Also returns std::nullopt
+  /// for a part without nearly flat regions, because its contact points are functions of the state.
   std::optional<Contact> follow(const Contact& contact) const;
   /// Returns the distance (m) below which two contact points of part contact.a are merged into one. contact:
   /// its side a is a part without local deformation.

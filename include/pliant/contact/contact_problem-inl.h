@@ -36,9 +36,10 @@ inline Mat3<double> axes(const Contact& contact) {
 /// size of the part.
 inline constexpr double kAtLimit = 1e-6;
 
-/// Sets `all` to the factors that make the velocities of a part or island comparable, m. A rotation by 1 rad
-/// is equivalent to a displacement by four sizes of the part, twice its extent. With a smaller weight of
-/// rotations, slender bodies that fall flat on a plane turn out of the plane of their motion.
+/// Sets `all` to the factors that convert the velocities of a part or island to comparable speeds (m/s). A
+/// rotation by 1 rad is equivalent to a displacement by four sizes of the part, twice its extent. With a
+/// smaller weight of rotations, slender bodies that fall flat on a plane turn out of the plane of their
+/// motion.
 inline void set_levers(const Model& model, const Movers& movers, const Mover& mover, VecX<double>& all) {
   constexpr double of_displacement = 0.25;
   all.setConstant(mover.size, of_displacement);

@@ -24,8 +24,8 @@ struct ContactRecord {
   VecX<double> joint_impulses;
   std::vector<double> time;  ///< time in which each impulse acts: the length of the step of its bodies, s
   double overlap = 0;        ///< largest overlap after the last separation, m
-  /// The worst residual of the impulses, and the worst overlap after the last separation, in units of the
-  /// tolerances.
+  /// The worst residual of the impulses, and the worst overlap after the last separation: those with the
+  /// largest ratio of ContactViolation::value to ContactViolation::tolerance.
   ContactViolation worst_residual{}, worst_overlap{};
 
   void clear();
@@ -33,7 +33,8 @@ struct ContactRecord {
 
 /// The motion at whose end contacts are resolved.
 struct ResolvedMotion {
-  /// State at its start, after predicted impulses; for impacts at one instant the state of the step itself.
+  /// State at its start, after predicted impulses. For impulses at one instant (a located impact, an impact
+  /// of a sequence or of a chain) it refers to step.state itself.
   const State& before;
   double force_time;  ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
   double h;           ///< length, s; 0 at a located impact: then nothing is cached, displaced or separated

@@ -122,8 +122,9 @@ class ContactStepping {
     bool even = true;               ///< whether all parts but the last had their full length
     bool equal_contacts = true;     ///< whether all but the last part have as many contacts as the whole step
     std::size_t last_contacts = 0;  ///< number of the first contact of the last part in the record
-    VecX<double> gravity_velocities;  ///< n_v: velocities by gravity after a pair lost all contacts
-    bool finite = false;
+    /// Velocities that gravity gives, in the whole step, the parts of pairs that have lost all contacts; n_v.
+    VecX<double> gravity_velocities;
+    bool finite = false;  ///< whether the state at the end is finite
   };
   Fractions step_fractions(int n, Integrator& method, StepContext& step, const Whole& whole,
                            const State& initial, double tolerance);
@@ -184,8 +185,8 @@ class ContactStepping {
   FrictionEvents friction_events_;
   Workspace<double> scratch_;
   bool few_parts_ = false;  ///< whether the model has so few moving parts that impacts are located
-  // Of the last step: contacts that rested at the start of a motion, and whether there were contacts whose
-  // time was not located.
+  // Of the last step: the contacts that rested at the start of a motion (only with a tolerance and few moving
+  // parts), and whether there were other resting contacts, or contacts whose time was not located.
   std::vector<Contact> resting_at_start_;
   bool has_unlocated_ = false;
   bool at_friction_event_ = false;  ///< whether the last step ended at a change of friction

@@ -41,7 +41,7 @@ class DampingWork {
   std::vector<int> damped_;                  // the moved parts with drag or damping
   std::vector<const SpringModel*> springs_;  // with dampers, at moved parts
   std::vector<const DriveModel*> drives_;    // with dampers, at moved parts
-  std::vector<int> at_dampers_;  // the parts at these springs and drives, and the parts that these read
+  std::vector<int> at_dampers_;  // the parts at these springs and drives, and those that their functions read
   Workspace<double> work_;
   Works without_impulses_ = Works::Zero();
 };

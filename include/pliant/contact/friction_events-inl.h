@@ -28,14 +28,15 @@ inline constexpr double kSlowInTolerances = 1e-2, kSlowInResiduals = 8, kSlowInR
 /// A probe is a motion with this share of the length of the examined motion. It shows whether contacts that
 /// stick at the start of the probe begin to slip.
 inline constexpr double kProbe = 1e-3;
-/// A contact slips in a probe if its speed grows by more than this share of the largest contact velocity
-/// without impulses. Its speed at the start of the probe is not zero if the contact point moves on the part.
+/// A contact slips in a probe if its speed at the end exceeds End::allowed_slip. This bound contains the
+/// speed at the start, which is not zero if the contact point moves on the part. The bound also contains
+/// kProbeSlip times the largest contact velocity without impulses.
 inline constexpr double kProbeSlip = 1e-7;
 /// Sticking contacts whose mean friction in a motion is at most this share of the largest friction are not
 /// probed. If the friction grows linearly from zero, it ends at twice its mean and does not reach the limit.
 inline constexpr double kSafeUse = 0.45;
-/// A contact begins to slip where its acceleration is at most this share of its acceleration at the end of
-/// the motion.
+/// The search for the time at which slip begins accepts a time at which slip_acceleration() is at most this
+/// share of its value at the end of the searched motion.
 inline constexpr double kSlipTolerance = 1e-6;
 /// Loads are constant if accelerations at the start and at the share kSampledLoads of the motion differ by at
 /// most kEqualLoads times the largest acceleration.
@@ -55,8 +56,8 @@ struct Interval {
 
 /// Returns the time at which a function of time ceases to be positive: a time at which its value is near
 /// `target`, or the end `outside` of an interval of length `accuracy`. Beyond the time sought the function is
-/// zero within rounding, so the search alternates between secants through positive values and halvings.
-/// Values up to kZero times `target` are treated as zero.
+/// negative, or zero within rounding, so the search alternates between secants through positive values and
+/// halvings. Values up to kZero times `target` are treated as zero.
 template <class F>
 double locate_end(Interval interval, double target, double accuracy, F&& function) {
   double last = 0, last_value = 0;
@@ -162,7 +163,8 @@ PLIANT_INLINE void FrictionEvents::find_starts(const Examined& motion, double to
 }
 
 /// Treats contacts as sticking from the start if they stick at the end of the motion, and if they slide by at
-/// most short_ (m). The extrapolation of a step leaves such small speeds.
+/// most short_ (m). The Richardson extrapolation at the end of an earlier step (step_doubling-inl.h) leaves
+/// such small speeds.
 PLIANT_INLINE void FrictionEvents::drop_short_slides(const Examined& motion, const Trial& end) {
   for (const End& e : end.ends)
     if (starts_[at(e.start)].speed * motion.free.h <= short_ && e.slip.norm() <= slow_)
@@ -317,8 +319,8 @@ PLIANT_INLINE double FrictionEvents::least_sliding(const Trial& trial) const {
   return least;
 }
 
-/// Returns the time from the start of the motion until a sliding contact stops or reverses, s; nothing if no
-/// contact does so before `end`, the end of the motion.
+/// Returns the time from the start of the motion until a sliding contact stops or reverses, s; std::nullopt
+/// if no contact does so before `end`, the end of the motion.
 PLIANT_INLINE std::optional<double> FrictionEvents::stop(const Examined& motion, const Trial& end) {
   auto sliding = [&](double tau) { return least_sliding(trial(motion, tau)); };
   const double h = motion.free.h, target = 0.5 * slow_;
@@ -348,8 +350,8 @@ PLIANT_INLINE double FrictionEvents::slip_acceleration(const Examined& motion, c
   return fastest;
 }
 
-/// Returns the time from the start of the motion until a sticking contact begins to slip, s; nothing if no
-/// contact does so before the end of the trial motion `end`.
+/// Returns the time from the start of the motion until a sticking contact begins to slip, s; std::nullopt if
+/// no contact does so before the end of the trial motion `end`.
 PLIANT_INLINE std::optional<double> FrictionEvents::slip(const Examined& motion, const Trial& end) {
   const bool any_stick =
       std::any_of(starts_.begin(), starts_.end(), [](const Start& s) { return s.sticks(); });

@@ -33,9 +33,10 @@ class FrictionEvents {
     const std::vector<Contact>& contacts;  ///< contacts at its end
   };
   /// Returns the time from the start of the motion to the first event that is found at its resting contacts,
-  /// s. Returns nothing if no event is found before the end of the motion. If a contact stops and then slides
-  /// in the same direction again within the motion, the search does not find this event. tolerance: tolerance
-  /// of the simulation; a contact that slides more slowly than the tolerance allows is treated as sticking.
+  /// s. Returns std::nullopt if no event is found before the end of the motion. If a contact stops and then
+  /// slides in the same direction again within the motion, the search does not find this event. tolerance:
+  /// tolerance of the simulation; a contact that slides more slowly than the tolerance allows is treated as
+  /// sticking.
   /// Contacts at nodes of meshes have no events.
   std::optional<double> first(const Examined& motion, double tolerance);
 
@@ -54,7 +55,7 @@ class FrictionEvents {
     int start;                ///< number of the contact at the start
     Vec3<double> slip;        ///< tangential velocity after the impulses, m/s
     double use;               ///< tangential impulse, divided by friction times the normal impulse
-    double allowed_slip = 0;  ///< a contact in a probe that slips slower than this sticks, m/s
+    double allowed_slip = 0;  ///< a contact that slips more slowly than this in a probe sticks, m/s
   };
   /// A motion from some state, and its state and contacts after the impulses.
   struct Trial {

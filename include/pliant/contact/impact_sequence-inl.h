@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxImpacts = 1000, kMaxImpactsOfPair = 10;
 /// impact if its speed is at most kRounding * a, or at most kLeftPerTolerance * (tolerance of contact) * a.
 /// The tolerance refers to the sum of approach and rebound, which is at most twice the approach speed.
 inline constexpr double kRounding = 1e-10, kLeftPerTolerance = 2;
-/// Approach speeds that differ by at most this share, or by kEqualResiduals times the residual of the
-/// impulses in this step, are equal.
+/// Approach speeds are equal if they differ by at most kEqualSpeed times the largest one, or by at most
+/// kEqualResiduals times the residual of the impulses in this step and at most Pair::slowest.
 inline constexpr double kEqualSpeed = 1e-9, kEqualResiduals = 2;
 
 }  // namespace impact_sequence

@@ -20,8 +20,8 @@ inline void set_step(State& state, double t, double h) {
 }
 
 /// Returns the time from the start of the motion to the first of the impacts, s, and sets step.state to that
-/// time. Returns nothing if the sides of the impacts touch during the whole motion; step.state is then at the
-/// end of the motion.
+/// time. Returns std::nullopt if the sides of the impacts touch during the whole motion; step.state is then
+/// at the end of the motion.
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 

@@ -20,7 +20,7 @@ namespace sleeping {
 
 /// The end of a step and the start of the next may differ by kTimeTolerance of the length plus kTimeUlps
 /// units in the last place of the time. A change of a drive (Drive in sleeping.h) near both times belongs to
-/// the second step: a load that changes after the first step has no influence on it.
+/// the second step: a load that changes after the first step has no influence on the first step.
 inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
 
 /// Returns whether a vector changes within h seconds after t: whether its values at t, t + h / 2 and t + h

@@ -41,8 +41,9 @@ inline constexpr double kJumpInGravity = 0.6;
 inline constexpr double kMaxLeftGap = 1000;
 /// With a tolerance below this, steps are repeated in thirds, too.
 inline constexpr double kThirdsTolerance = 1e-4;
-/// If slow_rate() times the length of a step is at most this, the error is always measured by the
-/// displacement.
+/// If slow_rate() times the length of a step is at most this, the error is always measured by displacements:
+/// the difference of the positions, and the displacement that the difference of the velocities causes in the
+/// step.
 inline constexpr double kBriefStep = 2e-5;
 
 /// Returns whether the linear velocity of a part, or its angular velocity times its size, differs by more

@@ -41,9 +41,9 @@ class FrameMeshes {
   /// Returns the bounding box of the visible parts, all visible obstacles, and the planes that act at the
   /// time of the state, m, world.
   Eigen::AlignedBox3d bounds(const State& state) const;
-  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if no
-  /// visible part is coloured by values. The maximum is not used, because at a point force it grows without
-  /// bound as the mesh is refined.
+  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or std::nullopt if
+  /// no visible part is coloured by values. The maximum is not used, because at a point force it grows
+  /// without bound as the mesh is refined.
   std::optional<double> high_value(const State& state) const;
   /// Returns the number of triangles of all visible parts, obstacles and planes.
   std::int64_t triangles() const;

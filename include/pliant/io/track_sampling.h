@@ -25,7 +25,7 @@ class TrackSampling {
  private:
   struct Sampled {
     PlacedPoint point;
-    double longest;     // distance between two recorded states, m
+    double longest;     // largest distance from `last` without a new recorded state, m
     Vec3<double> last;  // position at the last call of note(), m
   };
   std::vector<Sampled> points_;

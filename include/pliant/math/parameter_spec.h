@@ -16,7 +16,7 @@ struct Range {
 enum class Follows {
   affine,   ///< affine in the rest position (x, y, z)
   section,  ///< affine in (x, y) within each section z = const of the rest shape
-  ring,     ///< affine in (x, y) along each curve of material points with the same u and w
+  ring,     ///< affine in (x, y) along each curve on which the material coordinates u and w are constant
   free,     ///< none of the above
 };
 

@@ -20,8 +20,8 @@ class ConstantsCache {
  public:
   /// Returns the stored constants of parts with this key; nullptr if there are none.
   std::shared_ptr<const PartConstants> find(const ConstantsKey& key) const;
-  /// Stores constants. Whenever the number of keys has doubled, removes the constants that no part uses any
-  /// more.
+  /// Stores constants. If the number of keys has reached a limit, first removes the constants that no part
+  /// uses any more. The limit is then at least twice the number of the remaining keys.
   void store(ConstantsKey key, std::shared_ptr<const PartConstants> constants);
 
   /// Number of calls of store(): how often constants were computed.

@@ -29,7 +29,7 @@ inline constexpr double kRigidFirst = 1e-6;
 /// The shape has converged if the length of a step (rad, see Assembly::step()) is at most kConverged. A
 /// relative decrease of the merit below kConverged is regarded as no decrease.
 inline constexpr double kConverged = 1e-9;
-/// Merits of closed configurations are equal within this relative difference.
+/// Merits of configurations without gaps are regarded as equal up to this relative difference.
 inline constexpr double kEqualMerit = 1e-12;
 /// Gap, in lengths of the joint (JointModel::length, the size of its smaller part), that the projection at
 /// the start of the run closes without loss of accuracy.
@@ -43,10 +43,11 @@ inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
 /// Largest number of joints that a message names, in addition to the joint with the largest gap.
 inline constexpr int kMaxNamed = 8;
-/// If a step is longer than kMaxStepSize times the allowed step, or does not decrease the merit, the cost of
-/// rigid motion is multiplied by kCostIncrease and the step is computed again. This is done only if a
-/// parameter has a stiffness and all gaps are at most kNearGap lengths. A step that is accepted at the first
-/// attempt without being halved divides the cost by kCostDecrease.
+/// If a step is longer than kMaxStepSize times the step that kMaxRotation and kMaxChange allow, or does not
+/// decrease the merit, the cost of rigid motion is multiplied by kCostIncrease and the step is computed
+/// again. This is done only if a parameter has a stiffness and each gap is at most kNearGap lengths of its
+/// joint. A step that is accepted at the first attempt without being halved divides the cost by
+/// kCostDecrease.
 inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCostDecrease = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();

@@ -20,8 +20,8 @@ inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 /// Impulses make the velocities agree with the closed joints. The function adds these impulses (N s), on the
 /// rows of all joints, to `impulses`. On return step.work is an evaluation of the joints of the island.
 /// scratch: scratch storage; its contents are ignored. The change of energy is added to Work::projection. It
-/// is added to Work::limits if the projection moved a parameter back to a limit, or pulled a string, and this
-/// limit or string did not push in the last evaluation.
+/// is added to Work::limits instead if the projection moved a parameter back to a limit, or pulled a string,
+/// and this limit or string did not push in the last evaluation.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 

@@ -2,7 +2,8 @@
 // (include/pliant/part/local/README.md). A change delta of (c, theta, q_s) that leaves every node in place
 // changes d by -G delta, and W^T d by -K^T delta:
 //   K^T delta = W^T d,   and for the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
-// H = sum over nodes k of G_k^T W_k; K = H - P^T with P = d(W^T d)/dq_s; H0 is M at d = 0.
+// H = sum over nodes k of G_k^T W_k; K = H - P^T with P = d(W^T d)/dq_s; H0 is the mass
+// matrix of (c, theta, q_s) at d = 0.
 #pragma once
 
 #include <pliant/project/project.h>
@@ -51,7 +52,7 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H0 by at most sqrt(2) |sum m d s^T|, and by terms of the residuals, which are small.
+  // K differs from H0 by at most sqrt(2) |sum m d s^T|, and by terms of W^T d, which is small.
   const bool regular = violation.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(violation.W_d) && small(state.h * violation.W_d_dot);
 }

@@ -46,8 +46,8 @@ inline constexpr double kMaxUndoneShare = 0.25;
 /// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
 inline constexpr double kTaut = 1e-9;
 
-/// A one-sided joint does not rebound if the magnitude of its rate C_dot is below this number, in units of
-/// the size of the joint times Stabilization::rate.
+/// A one-sided joint does not rebound if the magnitude of its rate C_dot is at most this number, in units of
+/// the length of the joint (JointModel::length) times Stabilization::rate.
 inline constexpr double kMinRebound = 1e-3;
 
 /// Returns whether a one-sided joint that stops a motion with the rate C_dot (m/s) rebounds.
@@ -150,8 +150,9 @@ class Projection {
         vectors_(vectors) {}
 
   /// Projects the coordinates onto C = 0 and the limits. vectors.q: the coordinates before the projection.
-  /// Returns whether a limit, or a string that was slack, pushed. Throws UnsatisfiableModel if joints
-  /// contradict each other, or NumericalFailure if the step opened a joint by more than kMaxGap.
+  /// Returns whether a limit or a string pushed that was not active before (remains_active()). Throws
+  /// UnsatisfiableModel if joints contradict each other, or NumericalFailure if the step opened a joint by
+  /// more than kMaxGap.
   bool coordinates() {
     // Rows that were dependent at the start of the step are dependent now, unless the step passes a singular
     // configuration. Joints contradict each other if they could only close by undoing the step.
@@ -269,8 +270,8 @@ class Projection {
     return state_.joints[at(j)] == JointMode::closed && work_.joints.C[joint.row] <= kTaut * joint.length;
   }
 
-  /// Iterates until the joints are closed to rounding. Returns whether a limit, or a string that was slack,
-  /// pushed.
+  /// Iterates until the joints are closed to rounding. Returns whether a limit or a string pushed
+  /// that was not active before (remains_active()).
   bool iterate_coordinates() {
     new_factor_ = false;
     pulled_strings_.clear();
@@ -406,7 +407,7 @@ class Projection {
   }
 
   /// Returns the failure of a closed joint with a gap above rounding, or of a string that is too long, with
-  /// the names of the joints that keep it open; nothing if there is no such joint or string.
+  /// the names of the joints that keep it open; std::nullopt if there is no such joint or string.
   std::optional<UnsatisfiableModel> open_joint() {
     if (!evaluated_ && !island_->strings.empty())
       step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
@@ -414,7 +415,7 @@ class Projection {
     double widest = 0;
     auto consider = [&](int j, double gap, double allowed) {
       if (state_.joints[at(j)] != JointMode::closed || !(gap > allowed) || gap <= widest) return;
-      if (!std::isfinite(gap)) return;  // the check of the state reports this gap
+      if (!std::isfinite(gap)) return;  // the check for a finite state reports this failure
       open = j;
       widest = gap;
     };
@@ -525,7 +526,7 @@ class Projection {
   int widest_joint_ = -1;            ///< number of the joint with the largest gap
   bool evaluated_ = false;           ///< whether the joints were evaluated at the current state
   bool linear_update_ = false;       ///< whether C_dot follows from an evaluation at earlier velocities
-  bool new_factor_ = false;          ///< whether this iteration computed the factor
+  bool new_factor_ = false;          ///< whether the last correction used a new factorisation
   std::vector<int> pulled_strings_;  ///< see mark_pulled()
 };
 

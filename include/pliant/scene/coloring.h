@@ -26,7 +26,7 @@ struct QuantityInfo {
 /// All quantities, in the order of SurfaceQuantity.
 const std::vector<QuantityInfo>& all_quantities();
 const QuantityInfo& quantity_info(SurfaceQuantity quantity);
-/// Returns the quantity with this name, or nothing if there is none.
+/// Returns the quantity with this name, or std::nullopt if there is none.
 std::optional<SurfaceQuantity> find_quantity(const std::string& name);
 
 struct Coloring {

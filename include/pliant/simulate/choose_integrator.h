@@ -32,8 +32,8 @@ class ChoiceStopped : public std::runtime_error {
   ChoiceStopped() : std::runtime_error("the choice of the integrator was stopped") {}
 };
 
-/// Returns a lower bound of the time of one evaluation of a part on one core, microseconds. The constants
-/// were measured with bench/step_bench, so that the result is the same on every machine.
+/// Returns a low estimate of the time of one evaluation of a part on one core, microseconds. Its constants
+/// were once measured and are fixed in the code, so that the result is the same on every machine.
 double evaluation_cost(const Part& part);
 
 /// Returns the choice. If all candidates fail, the choice is the first candidate, dop853. Among equally fast

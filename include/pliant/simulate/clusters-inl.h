@@ -32,8 +32,8 @@ inline constexpr double kAtEnd = 1e-9;
 /// gaps step together, so that they can rest on each other.
 inline constexpr double kMinTravel = 1e-5;
 
-/// Returns an estimate of the distance that a point of a part moves relative to its frame in h seconds, m: by
-/// the angular velocity, and by the rates of the parameters.
+/// Returns an estimate of the distance that a point of a part moves relative to the origin of its frame in h
+/// seconds, m: by the angular velocity, and by the rates of the parameters.
 inline double turn(const PartModel& m, const VecX<double>& v, double h, double radius) {
   return h * (radius * v.segment<3>(m.v0 + 3).norm() + shape_speed(m, v.segment(m.v0, 6 + m.n_s), radius));
 }
@@ -242,7 +242,7 @@ PLIANT_INLINE bool Clusters::simulate(Cluster& cluster, double end) {
   Simulation& of = *cluster.simulation;
   extract_state(whole_.model_, whole_.state_, of.model_, of.state_);
   of.interval_ = whole_.interval_;
-  of.forget_counters();  // of a simulation whose result was not used
+  of.forget_counters();  // an earlier result of this simulation may not have been used
   for (const int part : cluster.parts) turned_[at(part)] = 0;
   cluster.done = true;
   bool farther = false;

@@ -14,9 +14,9 @@ std::string burst_parts(const Model& model, const State& state);
 /// or work that is not a finite number, squares whose sum is too large, and a quaternion that is not a
 /// rotation. work: the last evaluation of the step.
 std::string fault_of(const Model& model, const State& state, const Workspace<double>& work);
-/// Returns a text that names the first term of the equations of motion that is not finite at the start or at
-/// the end time of the step from a state. If all terms are finite, says that the motion has grown without
-/// bound.
+/// Returns a text that names the first term of the equations of motion that is not finite in the state before
+/// a step, at the start or at the end time of the step. If all terms are finite, says that the motion has
+/// grown without bound.
 std::string cause(const Dynamics& dynamics, const State& before);
 
 /// Returns a text that names the part and the kind of its energy, and the kind of work, that differ most

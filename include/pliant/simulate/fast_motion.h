@@ -69,7 +69,7 @@ class FastMotions {
   VecX<double> length_;  ///< size of a large change of each coordinate: m, or 1 for other units
   VecX<double> weight_;  ///< square root of the inertia of each velocity
   double rate_ = 0;      ///< a typical rate of change, 1/s; 0: nothing is stiff or damped
-  double largest_ = 0;   ///< largest norm of an image
+  double largest_ = 0;   ///< largest norm of a product of the Jacobian with a vector of basis_
   std::vector<VecX<double>> basis_;
   MatX<double> H_;  ///< the projection of the Jacobian onto the basis, with one row more
 };

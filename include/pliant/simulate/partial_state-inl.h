@@ -14,8 +14,8 @@ namespace pliant {
 
 namespace partial_state {
 
-/// Copies the cached contacts among the parts `numbers` (increasing) to `part`. The copies contain the
-/// numbers that the parts have in the model of these parts.
+/// Copies the cached contacts of the parts `numbers` (increasing) to `part`, without contacts with other
+/// parts. The copies contain the numbers that the parts have in the model of these parts.
 inline void extract_cache(const std::vector<CachedContact>& cache, const std::vector<int>& numbers,
                           std::vector<CachedContact>& part) {
   part.clear();

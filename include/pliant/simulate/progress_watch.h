@@ -17,7 +17,7 @@ struct SlowProgress {
   long rejected = 0;     ///< number of rejected steps
   long impacts = 0;      ///< number of impacts whose time was located
   long evaluations = 0;  ///< number of evaluations of the accelerations
-  std::string fastest;   ///< the block that changes most in the last step (ErrorScale::worst)
+  std::string fastest;   ///< text: the velocity that changes most in the last step (ErrorScale::worst)
 };
 
 /// Counts the accepted steps of a simulation and their work in windows of consecutive steps.
@@ -33,8 +33,9 @@ class ProgressWatch {
   static constexpr long kMaxEvaluations = 100000;
 
   /// Includes an accepted step. Returns the window if it ends with this step and is slow. start, end: times
-  /// of the step, s. interval: the whole time that the simulation is to advance, s. work: the counters of
-  /// this step. A step that does not begin at the end of the previous step begins a new window.
+  /// of the step, s. interval: the time with which the advance is compared, s (Simulation::slow_progress()).
+  /// work: the counters of this step. A step that does not begin at the end of the previous step begins a new
+  /// window.
   std::optional<SlowProgress> add(double start, double end, double interval, const StepCounters& work);
 
  private:

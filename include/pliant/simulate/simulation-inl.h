@@ -232,8 +232,8 @@ void Simulation::with_rollback(double h, Advance&& step) {
   }
 }
 
-/// Returns whether shorter steps succeed after a step of h seconds in which joints contradict each other.
-/// Changes the state; the caller must restore it.
+/// Returns whether shorter steps succeed in place of a step of h seconds in which joints contradict each
+/// other. Changes the state; the caller must restore it.
 PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   state_ = last_good_;
   try {
@@ -261,7 +261,7 @@ PLIANT_INLINE double Simulation::integrate() {
 }
 
 /// Stages 2 to 4 and 6 of a step of fixed length: advances the state by h seconds. The step is divided at the
-/// times at which joints switch or paths have kinks. The caller increments State::step.
+/// times of Model::switch_times() and at the kinks of Model::next_kink(). The caller increments State::step.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
   if (times.empty() && !model_.may_have_kinks()) {
@@ -309,8 +309,8 @@ PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
   switching_.switch_at(at, tolerance);
 }
 
-/// Stage 6: applies the impulses at a kink, a time (s) at which the velocity of a prescribed path jumps, and
-/// switches springs. Times that differ by at most the tolerance (s) are equal.
+/// Stage 6: at a kink (Model::next_kink(), s), applies the impulses of prescribed paths whose velocity jumps,
+/// and switches springs. Times that differ by at most the tolerance (s) are equal.
 PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   switch_springs(kink, tolerance);
   StepContext after(dynamics_, state_, work_, step_counters_, just_after(kink), state_.h);

@@ -42,8 +42,8 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Advances by h seconds (> 0 and finite). Without a tolerance the advance is one step, which is divided at
-  /// the times at which joints engage or are released, or prescribed paths have kinks. With a tolerance the
-  /// advance consists of as many steps as the tolerance requires. Throws std::invalid_argument for an invalid
+  /// the times of Model::switch_times() and at the kinks of Model::next_kink(). With a tolerance the advance
+  /// consists of as many steps as the tolerance requires. Throws std::invalid_argument for an invalid
   /// h. Throws NumericalFailure or UnsatisfiableModel if a step fails, and restores the state before this
   /// step.
   void step(double h);
@@ -97,10 +97,10 @@ class Simulation {
   /// Returns the clusters (simulate/clusters.h); nullptr if all parts step together.
   const Clusters* clusters() const { return clusters_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// Returns the first steps that hardly advanced (ProgressWatch); nothing if there were no such steps.
-  /// Without a tolerance, the interval of the watch is the length of one step. With a tolerance, the interval
-  /// is the time from the first state, or from the state of the last set_state(), to the argument `until` of
-  /// the last step_up_to().
+  /// Returns the first steps that hardly advanced; std::nullopt if there were no such steps. ProgressWatch
+  /// compares the advance of many steps with an interval. Without a tolerance, this interval is the length of
+  /// one call of step(). With a tolerance, the interval is the time from the first state, or from that of the
+  /// last set_state(), to the argument of the last step_up_to().
   const std::optional<SlowProgress>& slow_progress() const { return slow_progress_; }
   /// Returns the impulses of joints at the times at which joints engaged and at kinks of prescribed paths, in
   /// the order of time. Impulses as small as rounding errors are omitted.
@@ -159,7 +159,7 @@ class Simulation {
   Workspace<double> work_;
   StepCounters step_counters_;
   ProgressWatch watch_;
-  double interval_ = 0;  ///< interval of the watch, s
+  double interval_ = 0;  ///< the interval with which watch_ compares the advance of steps, s
   std::optional<SlowProgress> slow_progress_;
   AssemblyReport assembly_;
   std::vector<bool> without_inertia_;  ///< whether each velocity had no inertia in at least one step

@@ -66,8 +66,8 @@ inline double stable_step_of(const Integrator& method, double K, double D) {
   return low;
 }
 
-/// Returns the largest stable step (s) for one eigenvalue (1/s). Motions that grow by themselves, like the
-/// fall of an inverted pendulum, do not limit the step.
+/// Returns the largest stable step (s) for one eigenvalue (1/s). Motions that grow without oscillation, like
+/// the fall of an inverted pendulum, do not limit the step.
 inline double stable_step_of(const Integrator& method, std::complex<double> eigenvalue) {
   const double damping = std::max(0.0, -eigenvalue.real());
   if (eigenvalue.imag() == 0) return stable_step_of(method, 0, damping);

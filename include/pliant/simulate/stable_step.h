@@ -10,7 +10,8 @@ namespace pliant {
 struct StableStep {
   double step;        ///< the result of largest_stable_step(), s
   std::string limit;  ///< the cause, e.g. "the local elasticity of part 'jelly'"; empty: none
-  /// The reason why the step may be limited more, for example by causes that are not included; empty: none.
+  /// The reason why the true limit may differ from `step`, for example a cause that is not included; empty:
+  /// none.
   std::string uncounted;
 };
 /// Returns the largest stable step at the current state, with its cause.

@@ -17,7 +17,7 @@ namespace pliant {
 
 /// The rule that decides which rows are dependent.
 enum class RankRule {
-  /// A row is dependent if its relative pivot is at most Pivots::kVanished.
+  /// A row is dependent if its relative pivot (the ratio of pivot to scale) is at most Pivots::kVanished.
   decide,
   /// The dependent rows are those of the previous factorisation, and other rows whose relative pivot is at
   /// most Pivots::kRounding. Within a step, joints are slightly open, so that dependent rows can look

@@ -20,7 +20,7 @@ struct Hit {
   Vec3<double> position;      ///< m, world
 };
 
-/// Returns the hit that is nearest to the origin of the ray, or nothing if the ray misses all meshes.
+/// Returns the hit that is nearest to the origin of the ray, or std::nullopt if the ray misses all meshes.
 std::optional<Hit> first_hit(const std::vector<NamedMesh>& meshes, const Ray& ray);
 
 /// The material points of the meshes that FrameMeshes makes of visible parts.
@@ -29,9 +29,9 @@ class SurfacePoints {
   /// scene, model: as for FrameMeshes.
   SurfacePoints(const Scene& scene, const Model& model);
 
-  /// Returns the point of a part at a hit, with angles that a scene can express exactly; nothing for an
-  /// obstacle or a plane. On a part with nodal deformation the point has a patch of a tenth of the size of
-  /// the part, because a force on one node deforms the mesh only next to it.
+  /// Returns the point of a part at a hit, with angles that a scene can express exactly, or
+  /// std::nullopt for an obstacle or a plane. On a part with nodal deformation the point has a patch of
+  /// a tenth of the size of the part, because a force on one node deforms the mesh only next to it.
   std::optional<Point> at(const Hit& hit) const;
 
  private:

@@ -41,8 +41,8 @@ class StableStiffness {
 
  private:
   double step_;
-  double present_ = 0;  // estimated K of the fastest motion of the scene at time 0, 1/s^2; at most 3/4 of the
-                        // largest stable K
+  double present_ = 0;  // estimated K (stiffness / effective mass) of the fastest motion of the scene at time
+                        // 0, 1/s^2; at most 3/4 of the largest stable K
 };
 
 }  // namespace pliant

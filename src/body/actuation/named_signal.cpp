@@ -22,7 +22,7 @@ int component(const std::string& name, const std::string& prefix) {
   return last >= 'x' && last <= 'z' ? last - 'x' : -1;
 }
 
-/// Returns the signal of a position or velocity, "x" ... "vz", or nothing for another name.
+/// Returns the signal of a position or velocity, "x" ... "vz"; std::nullopt for another name.
 std::optional<Signal> place_signal(const std::string& quantity, SignalKind place, SignalKind rate) {
   Signal signal;
   if (const int i = component(quantity, ""); i >= 0) {
@@ -37,7 +37,8 @@ std::optional<Signal> place_signal(const std::string& quantity, SignalKind place
   return signal;
 }
 
-/// Returns the signal of the distance of two points, or its rate.
+/// Returns the signal of the distance of two points ("length") or of its rate ("rate"); std::nullopt for
+/// another name.
 std::optional<Signal> length_signal(const std::string& quantity, const Point& a, const Point& b) {
   if (quantity != "length" && quantity != "rate") return {};
   Signal signal;
@@ -82,7 +83,7 @@ std::vector<std::string> quantities_of(const Joint& joint) {
   return names;
 }
 
-/// Returns the signal of a quantity of a part, or nothing for an unknown quantity.
+/// Returns the signal of a quantity of a part; std::nullopt for an unknown quantity.
 std::optional<Signal> signal_of(const Part& part, const std::string& quantity) {
   std::optional<Signal> signal = place_signal(quantity, SignalKind::position, SignalKind::velocity);
   if (const int i = component(quantity, "omega."); i >= 0) {
@@ -103,7 +104,7 @@ std::optional<Signal> signal_of(const Part& part, const std::string& quantity) {
   return signal;
 }
 
-/// Returns the signal of a quantity of a joint, or nothing for an unknown quantity.
+/// Returns the signal of a quantity of a joint; std::nullopt for an unknown quantity.
 std::optional<Signal> signal_of(MultiBody& body, const Joint& joint, const std::string& quantity) {
   if (joint.rows() == 1 && joint.points().size() == 2)
     return length_signal(quantity, joint.points()[0], joint.points()[1]);

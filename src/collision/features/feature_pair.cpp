@@ -14,7 +14,8 @@ namespace {
 /// times their half angles plus kTurnSlack (rad). The gap may exceed the limits by kGapSlack times the sum of
 /// both radii plus kGapRounding sizes of the smaller part.
 constexpr double kFirstMove = 1.6, kFirstTurn = 1.2, kTurnSlack = 0.05, kGapSlack = 0.05, kGapRounding = 1e-9;
-/// Two patches are not searched if the first step leads to points within kLeadsTo radii of a known contact.
+/// Two patches are not searched if the first step leads to points that are within kLeadsTo radii of their
+/// patches from those of a known common normal.
 constexpr double kLeadsTo = 0.8;
 /// Normals are equal if the cosine of the angle between them exceeds this. Contacts with equal normals are
 /// merged if they are nearer to each other than FeatureLimits::one_point.
@@ -62,7 +63,7 @@ Iterator move_outermost(Iterator first, Iterator last) {
 }
 
 /// Of contacts that have equal gaps, and equal features or equal normals, keeps those that are farthest
-/// apart. All overlaps are kept. size: of the smaller part, m.
+/// apart. All overlaps deeper than kShallow * size are kept. size: of the smaller part, m.
 void keep_outermost(std::vector<CommonNormal>& found, double size) {
   auto first = std::stable_partition(found.begin(), found.end(),
                                      [&](const CommonNormal& at) { return at.gap < -kShallow * size; });

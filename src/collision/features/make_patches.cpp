@@ -23,8 +23,8 @@ constexpr double kBallMargin = 1.1;
 constexpr double kNormalMargin = 0.03;
 /// Least factor by which a deformation may shorten a tangent, and least sine of the angle between tangents.
 constexpr double kLeastStretch = 1e-6;
-/// In a mesh, the normal turns from the middle to the border of a patch by an angle. This angle is estimated
-/// as this share of the angle between the normals of neighbouring patches.
+/// On a smooth solid, the normal turns from the middle to the border of a patch by an angle that is estimated
+/// as this share of the angle between the normals at the middles of neighbouring patches.
 constexpr double kBorder = 0.6;
 
 /// Appends the outward normals of the adjacent faces at a point of a feature.

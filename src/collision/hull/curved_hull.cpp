@@ -17,7 +17,8 @@ constexpr double kStraight = 1e-12;
 /// The side of a part with two pieces is developable if the normals at both ends of each generator differ by
 /// at most this, rad.
 constexpr double kSameNormal = 1e-6;
-/// Number of generators in this test, and the angle (rad) between the points that give a tangent of the rim.
+/// Number of generators in this test, and half the angle (rad) between the two directions whose support
+/// points give a tangent of the rim.
 constexpr int kGenerators = 8;
 constexpr double kRimAngle = 1e-4;
 /// A generator or edge is level at a point if its slope m . dx/dshare (ImagePoint) is at most this, in sizes.

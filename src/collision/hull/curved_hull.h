@@ -13,7 +13,7 @@ namespace pliant {
 /// Limits of the points that a search returns.
 struct PointLimits {
   double one_point;  ///< of points nearer to each other than this (m) one is kept
-  /// Points with a smaller m . x (m) may be left out.
+  /// Points x with a smaller m . x (m) may be left out; m: direction of the search, unit vector.
   double least_height = -std::numeric_limits<double>::infinity();
 };
 
@@ -42,8 +42,8 @@ class CurvedHull {
   /// with several pieces are treated as not convex, because they can be convex at single values only.
   bool is_convex() const;
   /// Appends the points of the surface that are farthest in the direction m among the points near them, and
-  /// the ends of all edges and generators. end_face: the number of an end face whose points are left out, or
-  /// -1.
+  /// the corners of a box, or the ends of the farthest generator of a part with two pieces. end_face: the
+  /// number of an end face whose points are left out, or -1.
   void add_local_points(const Vec3<double>& m, int end_face, const PointLimits& limits,
                         std::vector<Vec3<double>>& points) const;
 

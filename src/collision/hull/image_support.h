@@ -35,8 +35,8 @@ class ImageSupport {
   /// start: a normal near that of the point. with_slope: whether to compute ImagePoint::slope.
   ImagePoint farthest(const Vec3<double>& m, const PieceFamily& family, double share,
                       const Vec3<double>& start, bool with_slope) const;
-  /// Returns the point of all members of a family that is farthest in the direction m. Returns nothing if it
-  /// is a point of the first or the last member. start: a point near the result.
+  /// Returns the point of all members of a family that is farthest in the direction m. Returns std::nullopt
+  /// if it is a point of the first or the last member. start: a point near the result.
   std::optional<ImagePoint> between(const Vec3<double>& m, const PieceFamily& family,
                                     const ImagePoint& start) const;
   /// Returns a normal from which the search for the farthest point in the direction m can start. If T is

@@ -23,8 +23,8 @@ std::vector<std::size_t> convex_hull(const std::vector<Point2>& points);
 std::vector<Point2> clip(const std::vector<Point2>& corners, const Point2& p, const Point2& q);
 
 /// Returns the common part of two segments. If they are parallel, to within `same` (m) over the length of the
-/// shorter one, returns the ends of their overlap, or nothing. Otherwise returns the point where their lines
-/// cross, moved to the nearer end of `one` if it is outside of `one`.
+/// shorter one, returns the ends of their overlap, or an empty list. Otherwise returns the point where their
+/// lines cross, moved to the nearer end of `one` if it is outside of `one`.
 std::vector<Point2> common_of_segments(const std::vector<Point2>& one, const std::vector<Point2>& other,
                                        double same);
 

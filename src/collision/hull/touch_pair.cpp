@@ -85,8 +85,9 @@ Face face_of(const PlacedHull& part, const Vec3<double>& n, const Eigen::Matrix<
 }
 
 /// Returns the common part of two faces in the projection along the normal: corners of a polygon, ends of a
-/// segment, or a crossing point of two segments. Returns nothing if a face has one corner. Returns no
-/// crossing point if is_point is true for a face. same: points nearer to each other than this (m) are merged.
+/// segment, or a crossing point of two segments. The list is empty if a face has one corner. It has
+/// no crossing point if is_point is true for a face. same: points nearer to each other than this (m) are
+/// merged.
 std::vector<Point2> common_part(const Face& of_a, const Face& of_b, double same) {
   if (of_a.corners.size() == 1 || of_b.corners.size() == 1) return {};
   const bool clip_a = of_b.corners.size() > 2;

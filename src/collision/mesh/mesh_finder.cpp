@@ -17,9 +17,10 @@ namespace pliant {
 namespace {
 
 /// kMaxDepthInObstacle: largest depth of a vertex behind an obstacle, as a share of the thickness of the
-/// part. A deeper vertex may be on the far side of the part, over a plate that supports the part.
-/// kMaxStepShare: limit of the motion of a part near an obstacle in a step, and of the deviation of an
-/// oscillating plane from its mean motion, as a share of the thickness of the part.
+/// part. A deeper vertex may be on the far side of the part: the top of a part that rests on a plate is
+/// behind the lower face of the plate. kMaxStepShare: limit of the motion of a part near an obstacle in a
+/// step, and of the deviation of an oscillating plane from its mean motion, as a share of the thickness of
+/// the part.
 constexpr double kMaxDepthInObstacle = 0.25, kMaxStepShare = 0.2;
 
 }  // namespace

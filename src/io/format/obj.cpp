@@ -71,8 +71,8 @@ char* put_unit(char* at, double x) {
   return at + 6;
 }
 
-// Returns a name that is valid for a group in an OBJ file. All characters up to the space, '#' and
-// backslashes would end or change the name, so each becomes '_'.
+// Returns a name that is valid for a group in an OBJ file. Characters with codes up to 0x20 (the
+// space), '#' and backslashes would end or change the name, so each becomes '_'.
 std::string group_name(const std::string& name) {
   std::string group = name;
   for (char& c : group)

@@ -57,7 +57,7 @@ std::vector<double> read_numbers(const fs::path& path) {
   return numbers;
 }
 
-/// Returns a checkpoint from the numbers of a file; nothing if the numbers do not fit the model.
+/// Returns a checkpoint from the numbers of a file, or std::nullopt if the numbers do not fit the model.
 std::optional<Checkpoint> checkpoint_of(const std::vector<double>& numbers, const Model& model) {
   const auto n_q = static_cast<std::size_t>(model.n_q()), n_v = static_cast<std::size_t>(model.n_v());
   const std::size_t n_contacts = static_cast<std::size_t>(numbers[1]), n_work = work_columns().size(),

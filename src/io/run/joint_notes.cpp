@@ -58,14 +58,14 @@ int rows_without_direction(const JointModel& joint, const Workspace<double>& wor
 }
 
 /// Returns whether joint j with a gap (m) is open: its mode is JointMode::closing. Without projection, the
-/// gap must also be larger than kClosedGap times the length of the joint.
+/// gap must also be larger than kClosedGap times JointModel::length (the size of the smallest part).
 bool is_open(const Simulation& simulation, int j, double gap) {
   if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
   const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];
   return simulation.dynamics().joint_policy().projected || gap > kClosedGap * joint.length;
 }
 
-/// Returns the size of an impulse of a joint, N s. An angular impulse is divided by the length of the joint.
+/// Returns the size of an impulse of a joint, N s. An angular impulse is divided by JointModel::length.
 double size_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   return impulse.impulse.force.norm() + impulse.impulse.torque.norm() / joint.length;
 }
@@ -84,8 +84,8 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
   // A joint agrees with the other joints if its disagreement() is at most this fraction of the sum of two
-  // accelerations. The first is the acceleration that the joint requires. The second is rate^2 times the
-  // length of the joint, which closes a gap of this length.
+  // accelerations. The first is the acceleration that the joint requires. The second is rate^2 times
+  // JointModel::length, which closes a gap of this length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();

@@ -15,7 +15,8 @@ struct BodyRule {
   std::vector<Material<double>> at;  ///< the points
   Eigen::Matrix3Xd X;                ///< positions of the points at rest, body frame, m
   VecX<double> volume;               ///< the weights, m^3
-  double remaining_change = 0;       ///< change of integrals by refinement / volume; 0 if converged
+  double remaining_change = 0;       ///< change of the integrals by refinement, relative to the
+                                     ///< volume; 0 if converged
 };
 
 /// Returns a rule for the integrals of all given products of Legendre polynomials. The rule may not have

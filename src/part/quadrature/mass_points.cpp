@@ -182,8 +182,9 @@ class MassIntegrands {
     return largest;
   }
   /// Scales each column of L, and the acceleration, to a root mean square of 1, so that small and large
-  /// entries of M have equal weight. Columns that are small in comparison with the whole body are multiplied
-  /// by `largest` instead. Such columns have large relative rounding errors, and do not matter for M.
+  /// entries of M have equal weight. A column that is much smaller at these points than over the whole body
+  /// is multiplied by its entry of `largest` instead. It has large relative rounding errors and does not
+  /// matter for M.
   static void scale_columns(const std::vector<RestPoint>& points, const Eigen::VectorXd& largest,
                             Kinematics& all) {
     const Eigen::VectorXd factors = unit_factors(points, all).cwiseMin(largest);

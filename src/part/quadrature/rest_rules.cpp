@@ -122,7 +122,7 @@ void RestShape::find_kinks() {
   if (!part.shape().bounded_exponents()) return;
   // In the radial map, the edges of a superellipsoid move over the material when its exponents change. With
   // y = log |tan| of the angles u and v at rest, and exponents eps1 and eps2 at rest: an edge is at y(v) = 0,
-  // and others are between y(u) = 0 and y(u) = log 2 / 2 (eps2_now - eps2) / eps1. Kinks::width is
+  // and others are between y(u) = 0 and y(u) = (log 2 / 2) (eps2_now - eps2) / eps1. Kinks::width is
   // proportional to the exponents.
   std::vector<Range> values;
   std::vector<double> at_rest;

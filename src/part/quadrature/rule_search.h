@@ -256,7 +256,7 @@ class RingSearch {
 
  private:
   static constexpr int kCoarse = 5, kPlaces = 16;
-  static constexpr std::size_t kSmallRing = 64;  // nodes of a ring that is computed fast without thinning
+  static constexpr std::size_t kSmallRing = 64;  // RingMoments thins rings with more nodes along v
 
   /// Integrands of the moments of rings of a solid at random nodes of u and w. A rule along v that is thinned
   /// for these integrands has few nodes, so that the search along u and w is fast. For shells such a rule is

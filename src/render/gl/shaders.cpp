@@ -32,8 +32,8 @@ vec3 background(float y) {
 }
 
 // Returns the unshadowed share of the key light, from a 4x4 grid of filtered comparisons. Each of the 2x2 samples of a
-// pixel evaluates four of them, so that the mean of the samples covers the whole grid. A picture with one sample for
-// each pixel has one filtered comparison.
+// pixel evaluates four of them, so that the mean of the samples covers the whole grid. A picture with at most one
+// sample for each pixel makes one filtered comparison.
 float key_light(sampler2DShadow map, vec3 place, vec2 sample_place) {
   float z = clamp(place.z, 0.0, 1.0);
   if (viewport.w < 1.0) return texture(map, vec3(place.xy, z));
@@ -192,8 +192,8 @@ uniform sampler2D contact_map;
 in vec3 at;
 out vec4 result;
 
-// Returns the share of a sample that is covered by lines at the integers, `wide` samples wide. Grids finer than the
-// samples fade out.
+// Returns the share of a sample that is covered by lines at the integers, `wide` samples wide. The lines fade out as
+// the cells become narrow: from about 17 samples per cell (full) to 4.5 samples per cell (none).
 vec2 lines(vec2 place, vec2 cell_per_sample, float wide) {
   vec2 off = abs(fract(place - 0.5) - 0.5) / cell_per_sample;
   return clamp(0.5 * wide + 0.5 - off, 0.0, 1.0) * (1.0 - smoothstep(0.06, 0.22, cell_per_sample));

@@ -21,8 +21,9 @@ namespace {
 
 /// The largest number of additional bytes between the header and the data of a binary file that the reader
 /// can skip. Some programs pad the header, for example to a multiple of 64 bytes. The lengths of lists are in
-/// the data, so that the reader must try each place. Reading from a wrong place fails soon: at a number that
-/// is not finite, at an impossible length or number of a vertex, or before the end of the file.
+/// the data, so that the reader must try each place. Reading from a wrong place usually fails soon, at a
+/// number that is not finite or at an impossible length or number of a vertex. Otherwise the reading ends
+/// before the end of the file.
 constexpr std::size_t kMaxDataShift = 64;
 
 /// The values of a text file, one after the other.

@@ -20,8 +20,8 @@ Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
 /// Returns whether an entry of the list of joints makes a ring of joints.
 bool has_ring(const Reader& r);
-/// Returns the names of the joints of a ring with a name, "NAME.1", ..., "NAME.count"; nothing without a
-/// ring.
+/// Returns the names of the joints of a ring with a name, "NAME.1", ..., "NAME.count"; no names
+/// without a ring.
 std::vector<std::string> ring_names(const Reader& r);
 
 /// Reads an entry of the list of joints without its drive, and adds one joint to the MultiBody, or the joints

@@ -24,8 +24,8 @@ constexpr double kSmallestRadius = 1e-5;
 /// Two polygons are equal if difference_of_polygons() is at most this share of the radius.
 constexpr double kEqual = 1e-6;
 
-/// Returns the point at an offset (m) from a point, in the frame of its part at rest or in the world; nothing
-/// if the part has no point there.
+/// Returns the point at an offset (m) from a point, in the frame of its part at rest or in the world, or
+/// std::nullopt if the part has no point there.
 std::optional<Point> at_offset(const Point& centre, const Vec3<double>& offset) {
   if (centre.part == nullptr) return world(TimeVector(centre.world.value(0) + offset));
   const Part& part = *centre.part;

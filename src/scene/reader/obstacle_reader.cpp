@@ -41,7 +41,7 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
 
 namespace {
 
-/// Returns the mesh of an obstacle, or nothing after a fault, which is reported.
+/// Returns the mesh of an obstacle, or std::nullopt after a fault, which is reported.
 std::optional<MeshFile> read_mesh(const Reader& r, const MeshFolder& folder, SceneFaults& faults) {
   const std::filesystem::path file =
       folder.path / (folder.of_a_run ? recorded_mesh_name(r.text("name")) : r.text("mesh"));

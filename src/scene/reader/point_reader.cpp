@@ -19,7 +19,7 @@ constexpr double kAngleRounding = 1e-4;
 constexpr double kFarOutside = 1;
 
 /// Returns the outermost intersection (m, body frame) of the rest shape with a ray from the origin of the
-/// frame, or nothing if there is no intersection.
+/// frame, or std::nullopt if there is no intersection.
 std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
   const Vec3<double> ray = direction.stableNormalized() * part.size();
   auto outside = [&](double t) {
@@ -116,7 +116,8 @@ std::optional<double> PointReader::jump(const Point& point, double after, double
   return {};
 }
 
-/// Returns the material point that a value describes, resolved at the rest shape, or nothing after a fault.
+/// Returns the material point that a value describes, resolved at the rest shape, or std::nullopt after a
+/// fault.
 std::optional<Material<double>> PointReader::material(const Part& part, const JsonValue& at) const {
   using Form = MaterialPointValue::Form;
   const MaterialPointValue value = read_material_point(at);

@@ -29,15 +29,16 @@ class PointReader {
 
   /// Returns the part that a key names, or null. An unknown name is reported.
   Part* part(const Reader& r, const char* key = "part") const;
-  /// Returns the point {"part", "at"}, or nothing if it cannot be resolved; faults are reported.
+  /// Returns the point {"part", "at"}, or std::nullopt if it cannot be resolved; faults are reported.
   std::optional<Point> on_part(const Reader& r) const;
-  /// Returns the point {"part", "at"} or {"world"}, or nothing if it cannot be resolved; faults are reported.
+  /// Returns the point {"part", "at"} or {"world"}, or std::nullopt if it cannot be resolved; faults are
+  /// reported.
   std::optional<Point> anywhere(const Reader& r) const;
-  /// Returns the point under a key of a spring or joint, read by anywhere(), or nothing if the key is absent
-  /// or faulty.
+  /// Returns the point under a key of a spring or joint, read by anywhere(), or std::nullopt if the key is
+  /// absent or faulty.
   std::optional<Point> end(const Reader& r, const char* key) const;
   /// Returns the first time in (after, until] and within the run (s) at which the position of a moving point
-  /// of the world jumps, or nothing. The path is searched in 256 intervals.
+  /// of the world jumps, or std::nullopt. The path is searched in 256 intervals.
   std::optional<double> jump(const Point& point, double after, double until) const;
 
  private:

@@ -24,10 +24,10 @@ class StateReader {
   StateReader(Scene& scene, SceneFaults& faults, std::vector<std::string> at_points = {})
       : scene_(scene), times_(scene.end, faults), faults_(faults), at_points_(std::move(at_points)) {}
 
-  /// Returns the function that a validated value of type schema::state_function describes, or nothing if the
-  /// value is faulty; the fault is reported.
+  /// Returns the function that a validated value of type schema::state_function describes, or std::nullopt if
+  /// the value is faulty; the fault is reported.
   std::optional<StateFunction> function(const JsonValue& value) const;
-  /// Returns the three functions under a key, or nothing if the key is absent or a function is faulty.
+  /// Returns the three functions under a key, or std::nullopt if the key is absent or a function is faulty.
   std::optional<StateVector> vector(const Reader& r, const char* key) const;
 
  private:

@@ -24,11 +24,11 @@ class TimeReader {
 
   /// End of the run, s.
   double end() const { return end_; }
-  /// Returns the function that a validated value describes. Reports a fault and returns nothing if the
-  /// function is not finite at one of 257 times from 0 to the end.
+  /// Returns the function that a validated value describes. Reports a fault and returns std::nullopt if
+  /// the function is not finite at one of 257 times from 0 to the end.
   std::optional<TimeFunction> function(const JsonValue& value, Needs needs) const;
-  /// Returns the three functions under a key, or nothing if the key is absent or a function is faulty. Each
-  /// fault is reported.
+  /// Returns the three functions under a key, or std::nullopt if the key is absent or a function is
+  /// faulty. Each fault is reported.
   std::optional<TimeVector> vector(const Reader& r, const char* key, Needs needs) const;
 
  private:

@@ -256,7 +256,7 @@ void LiveMotion::add_drive_stiffnesses(const std::string& part) {
                     0.1f * static_cast<float>(stiffness.first), static_cast<float>(stiffness.most), "%.4g",
                     ImGuiSliderFlags_Logarithmic))
       continue;
-    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
+    stiffness.next = std::min<double>(value, stiffness.most);  // as a float, `most` may be larger
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_drive_stiffness(i, wanted);
     });
@@ -272,7 +272,7 @@ void LiveMotion::add_local_stiffnesses(const std::string& part) {
     if (!add_slider("local stiffness", value, 0.01f, static_cast<float>(stiffness.most), "%.3g x",
                     ImGuiSliderFlags_Logarithmic))
       continue;
-    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
+    stiffness.next = std::min<double>(value, stiffness.most);  // as a float, `most` may be larger
     run_.post([i, wanted = stiffness.next](LiveSimulation& simulation) {
       simulation.set_local_stiffness(i, wanted);
     });
@@ -292,7 +292,7 @@ void LiveMotion::add_stiffnesses(const std::string& part) {
     if (!add_slider(spring.name + " (N/m)", value, 0.1f * first, static_cast<float>(stiffness.most), "%.4g",
                     ImGuiSliderFlags_Logarithmic))
       continue;
-    stiffness.next = std::min<double>(value, stiffness.most);  // the value may be rounded to above it
+    stiffness.next = std::min<double>(value, stiffness.most);  // as a float, `most` may be larger
     run_.post(
         [i, wanted = stiffness.next](LiveSimulation& simulation) { simulation.set_stiffness(i, wanted); });
   }

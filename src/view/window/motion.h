@@ -36,8 +36,8 @@ class Motion {
   /// Shows all kinds of forces, or none.
   virtual void toggle_forces() = 0;
 
-  /// Begins to drag the point of a hit. Returns the name of its part, or nothing if the point cannot be
-  /// dragged.
+  /// Begins to drag the point of a hit. Returns the name of its part, or std::nullopt if the point
+  /// cannot be dragged.
   virtual std::optional<std::string> grab(const Hit& hit) = 0;
   virtual void drag_to(const Vec3<double>& position) = 0;
   virtual void release() = 0;

@@ -1,6 +1,6 @@
 // The angle of a hinge: the rotation of the first side relative to the second about the pin, in (-pi, pi].
 //   C = atan2(a_2 . b_3, a_2 . b_2)
-// Here a and b are the frames of the hinge at x_0 and y_0; b_1 is the direction of the pin.
+// Here a and b are the frames at the first and the second side of the hinge; b_1 is the direction of the pin.
 #pragma once
 
 #include <pliant/body/actuation/two_frames.h>

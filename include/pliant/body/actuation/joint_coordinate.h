@@ -28,7 +28,8 @@ std::unique_ptr<Joint> make_coordinate(const Joint& joint, const BallAxes& ball)
 
 /// Return the one-sided joints that limit a coordinate, see MultiBody::limit(), limit_swing() and
 /// limit_twist(). lower, upper, max: rad, or m for a slider. restitution: from 0 to 1. Throw
-/// std::invalid_argument for invalid numbers, and if joints of this type do not have such a limit.
+/// std::invalid_argument for invalid numbers, and if the function is not for coordinates of this type, for
+/// example make_swing_limit() of a hinge.
 std::vector<std::unique_ptr<Joint>> make_limits(const Joint& coordinate, double lower, double upper,
                                                 double restitution);
 std::vector<std::unique_ptr<Joint>> make_swing_limit(const Joint& coordinate, double max, double restitution);

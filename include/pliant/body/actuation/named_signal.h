@@ -21,7 +21,7 @@ class MultiBody;
 /// Material points by their names.
 using NamedPoints = std::map<std::string, Point>;
 
-/// Returns the signal of a quantity of an owner, or nothing if no object has the name `owner`. Adds the
+/// Returns the signal of a quantity of an owner, or std::nullopt if no object has the name `owner`. Adds the
 /// coordinate of a joint to the body if the signal needs it. Throws std::invalid_argument if the owner does
 /// not have the quantity, or if two objects of this name, for example a part and a spring, both have it.
 std::optional<Signal> named_signal(MultiBody& body, const std::string& owner, const std::string& quantity,

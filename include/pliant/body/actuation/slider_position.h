@@ -1,5 +1,5 @@
-// The position of a slider along its direction, C = b_1 . (x_0 - y_0), m. b_1 is the first axis of the frame
-// at y_0.
+// The position of a slider along its direction, C = b_1 . (x_0 - y_0), m. x_0 and y_0 are the points at the
+// first and the second side of the slider; b_1 is the first axis of the frame at y_0.
 #pragma once
 
 #include <pliant/body/actuation/two_frames.h>

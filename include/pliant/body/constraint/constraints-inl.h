@@ -96,8 +96,8 @@ void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, 
   }
 }
 
-/// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if the joint acts or is a slack string.
-/// Otherwise sets C_q^T to zero.
+/// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if the joint acts or is one-sided and
+/// slack. Otherwise sets C_q^T to zero.
 template <class S>
 void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
                     ConstraintWorkspace<S>& work) {
@@ -277,10 +277,11 @@ double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, 
 namespace detail {
 
 /// Returns the factor, at least 1, by which the scales of the pivots (solve/pivots.h) of joint j are raised.
-/// Rows that depend on each other look independent while their joints have a gap e. The relative pivots of
-/// these rows are then of the order (e / r)^2, where r is the distance between the points of the two joints.
-/// With the factor, pivots up to (kOpenPivot e / length)^2 vanish. Joints that have just become closed have
-/// gaps e up to kJustClosed lengths; for larger gaps, and for joints that are not closed, the factor is 1.
+/// Rows of two joints that depend on each other look independent while the joints have a gap e. The ratios of
+/// their pivots to the diagonal are then of the order (e / r)^2, where r is the distance between the points
+/// of the two joints. With the factor, ratios up to (kOpenPivot e / length)^2 count as zero. length:
+/// JointModel::length. Joints that have just become closed have gaps e up to kJustClosed lengths; for larger
+/// gaps, and for joints that are not closed, the factor is 1.
 template <class S>
 double scale_of_open_rows(const JointModel& joint, const ConstraintWorkspace<S>& work, int j) {
   constexpr double kOpenPivot = 10, kJustClosed = 2e-3;

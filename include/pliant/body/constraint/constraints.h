@@ -2,7 +2,8 @@
 //   W_c lambda = -(C_q a + bias + 2 alpha C_dot + beta^2 C),   W_c = C_q M^-1 C_q^T,
 // where a are the accelerations without joints, and bias = -gamma of Eq. (13). The accelerations with joints
 // are a + M^-1 C_q^T lambda. The sign of lambda is opposite to the paper's: the force on the parts is +C_q^T
-// lambda. A joint "acts" (exerts forces) if its JointMode is closing or closed.
+// lambda. A joint "acts" (exerts forces) if its JointMode is closing or closed. Here a "string" is any
+// one-sided joint (Island::strings), also a limit of the coordinate of a joint.
 #pragma once
 
 #include <functional>
@@ -47,7 +48,8 @@ class JointFactor {
               const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
   /// The blocks of W_c, for a caller that fills them in and factors them itself.
   BlockFactor<S>& blocks() { return blocks_; }
-  /// For a derivative: keeps a reference to the augmented factor of the values, if there is one.
+  /// For a derivative: keeps a reference to the augmented factor, if there is one, of the evaluation whose
+  /// derivative is computed. values: the JointFactor of that evaluation.
   void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
 
   /// Replaces x by W_c^-1 x, with zeros for dependent rows. A derivative with the augmented matrix treats W_c
@@ -82,7 +84,7 @@ struct GroupVectors {
   VecX<S> correction, change;  ///< lambda and change of x of the last Group::correct()
   VecMax<S, Max> start, gain;  ///< velocities at the evaluation of the joints, and their change since then
   VecX<S> gained;              ///< C_q gain, the change of C_dot of the joints
-  VecX<S> q, v;                ///< coordinates and velocities of a state
+  VecX<S> q, v;                ///< stored coordinates and velocities (Snapshot, project/project_joints-inl.h)
 };
 
 /// The quantities of all joints at an evaluation. Rows of all joints are in the order of the joints. The

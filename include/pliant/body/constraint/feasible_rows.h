@@ -1,7 +1,7 @@
-// The rows b that closing joints request, W_c lambda = -b, if these joints depend on each other. For example,
-// three ball joints between two rigid parts have more rows than the parts have relative motions. Then there
-// are vectors n with W_c n = 0, and accelerations exist only for rows b with n . b = 0. While such joints are
-// open, Baumgarte's terms violate this condition.
+// The right-hand side b of W_c lambda = -b if closing joints depend on each other. For example, three ball
+// joints between two rigid parts have more rows than the parts have relative motions. Then there are vectors
+// n with W_c n = 0, and a solution lambda exists only if n . b = 0. While these joints are open, Baumgarte's
+// terms in b violate this condition.
 #pragma once
 
 #include <utility>
@@ -18,8 +18,8 @@ template <class S>
 class DependentRows {
  public:
   /// Computes the vectors n. group: the group of the island with all joints that act, after an evaluation and
-  /// factorisation. With the augmented matrix there are no vectors: its lower right block makes all rows
-  /// feasible.
+  /// factorisation. With the augmented matrix no vectors are computed: its lower right block -d gives a
+  /// solution for every b.
   DependentRows(const Model& model, const Island& island, const Workspace<S>& work,
                 const Group<S, Eigen::Dynamic>& group) {
     const ConstraintWorkspace<S>& joints = work.joints;
@@ -53,8 +53,8 @@ class DependentRows {
 
   bool empty() const { return n_.cols() == 0; }
 
-  /// Changes the rows b for which may_change is true as little as possible, in the sum of squares, so that
-  /// n . b = 0 for all vectors n. may_change: one flag for each row of the island.
+  /// Changes the entries of b for which may_change is true as little as possible, in the sum of squares, so
+  /// that n . b = 0 for all vectors n. may_change: one flag for each row of the island.
   void make_feasible(const std::vector<bool>& may_change, VecX<S>& b) const {
     MatX<double> changeable = n_.transpose();
     for (Eigen::Index r = 0; r < b.size(); ++r)
@@ -77,8 +77,8 @@ class DependentRows {
     for (Eigen::Index i = 0; i < of.size(); ++i) values[i] = plain(of[i]);
     return values;
   }
-  /// Calls act(get) with get(x) for the value of a scalar x, and for each of its derivatives. The derivatives
-  /// of the vectors n are neglected.
+  /// Calls act(get) with a get(x) that returns the value of a scalar x. For Dual<1>, calls act(get) again,
+  /// with a get(x) that returns the derivative of x. The derivatives of the vectors n are neglected.
   template <class F>
   static void for_each_value(const VecX<double>& /*of*/, F&& act) {
     act([](auto& x) -> auto& { return x; });

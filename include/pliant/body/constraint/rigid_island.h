@@ -46,12 +46,12 @@ struct RigidWorkspace {
     Vec3<Pack> push;         ///< force of the joint, N, world
   };
   bool used = false;      ///< whether the last evaluation used the rigid island
-  bool prepared = false;  ///< whether the workspaces of the parts contain their constants
-  Counters counters;      ///< how often the kernels of the island ran
+  bool prepared = false;  ///< whether the workspaces of its parts refer to the constant masses of the parts
+  Counters counters;      ///< numbers of quantities that were evaluated (part/counters.h)
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T of the pairs i <= j of arms of four parts
-  VecX<double> lambda;               ///< rows of the joints; after solve_forces(), W_c^-1 times the rows
+  VecX<double> lambda;  ///< C, C_dot or C_ddot of the joints; solve_forces() multiplies it by W_c^-1
   Eigen::Matrix<double, 7, Eigen::Dynamic> q_before;  ///< coordinates before the joints are closed
   Eigen::Matrix<double, 6, Eigen::Dynamic> v_before;  ///< velocities before the joints are closed
 };

@@ -86,9 +86,9 @@ class IslandForces {
  private:
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
-  /// Changes x so that C_q x = -wanted for each acting joint j for which which(j) is true, and adds the
-  /// forces to lambda: Eq. (14) after elimination of M. adapt(rows) may change the rows, C_q x + wanted,
-  /// before the forces remove them.
+  /// Changes x so that C_q x + wanted = 0 for each acting joint j for which which(j) is true, and adds the
+  /// forces that do this to lambda: Eq. (14) after elimination of M. adapt(rows) may change the residuals
+  /// rows = C_q x + wanted before the forces make them zero.
   template <class Which, class Adapt>
   void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda,
                Adapt&& adapt) const {
@@ -113,9 +113,9 @@ class IslandForces {
     correct(group, which, x, lambda, [](VecX<S>&) {});
   }
 
-  /// Adds the forces of the closing joints. If rows depend on each other and request different
-  /// accelerations, the sum of their squared violations is minimised. The forces are scaled down if they
-  /// accelerate a part by more than kMaxClosingRatio times the largest request.
+  /// Adds the forces of the closing joints. If rows depend on each other and request accelerations that
+  /// contradict each other, the sum of the squared residuals C_q x + wanted is minimised. The forces are
+  /// scaled down if they accelerate a part by more than kMaxClosingRatio times largest_request().
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;

@@ -1,5 +1,5 @@
 // The list of joints. A new joint needs its file and an entry here; the registry, the schema, `pliant list`
-// and the law tests follow from this list.
+// and the tests of the formulas (tests/body/joints.cpp) use this list.
 #pragma once
 
 #include <tuple>

@@ -31,7 +31,7 @@ struct Hinge {
   template <class T>
   static Vec<T, 2> axis_angle(const Vec3<T>& a, const Mat3<T>& b) {
     Vec3<T> of_b = b.transpose() * a;
-    // At a half turn the direction of the error is not defined: choose one, like rotation_vector().
+    // Near theta = pi, a . b_2 and a . b_3 give no direction: choose one, like rotation_vector().
     if (plain(of_b[0]) <= kHalfTurnCosine) of_b[1] += T(kHalfTurnOffset);
     of_b /= math::sqrt(T(of_b.dot(of_b)));
     const T factor = angle_over_sine(of_b[0], T(of_b[1] * of_b[1] + of_b[2] * of_b[2]));

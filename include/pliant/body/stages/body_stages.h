@@ -35,7 +35,7 @@ void choose_rigid_islands(const Evaluation<S>& e) {
 }
 
 /// Lists the parts that are evaluated before any joint: parts without joints, and all parts of islands that
-/// are not evaluated with their joints. If a rigid island is used and its constants are known, only its
+/// are not evaluated with their joints. If a rigid island is used and is RigidWorkspace::prepared, only its
 /// parts with loads are listed. If only rates are requested, sleeping parts are left out, unless loads act on
 /// them or on their island: the loads need their positions.
 template <class S>

@@ -32,7 +32,7 @@ inline LocalMotion local_motion(const PartModel& m, const PartWorkspace<double>&
 // Stage 1: positions.
 
 /// Computes c, R, q_s, q_s_dot and v_r of a part at time t (s). Returns the prescribed motion of the part, or
-/// nothing if its motion is not prescribed.
+/// std::nullopt if its motion is not prescribed.
 template <class S>
 std::optional<MovingFrame> place_frame(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v,
                                        PartWorkspace<S>& w) {
@@ -294,8 +294,8 @@ inline bool has_inertialess_velocity(const PartWorkspace<double>& w) {
   return w.rigid != nullptr ? w.rigid->rigid_mass->factor.any_excluded() : w.factor.any_excluded();
 }
 
-/// Factors M of a part. M of a rigid part has a constant factor. M of a part that deforms locally is computed
-/// here if a joint or a limit can push on the part.
+/// Factors M of a part, to which PartWorkspace::stiffening adds a term. M of a rigid part has a constant
+/// factor. M of a part that deforms locally is computed here if a joint or a limit can push on the part.
 inline void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // neither a joint nor a limit can push on the part

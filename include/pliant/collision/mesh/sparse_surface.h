@@ -8,7 +8,8 @@ namespace pliant {
 
 /// Returns the surface of a part at a resolution (Surface) without some of the mesh lines in flat regions.
 /// The triangles cover the same surface at rest and at two other values of the dynamic parameters, up to
-/// rounding. cell: largest extent of the wider cells along the axes of the frame, at rest, m.
+/// rounding. Along an axis of the frame, lines are left out only if the extent of the part at rest, divided
+/// by the number of the remaining cells, is at most `cell` (m).
 Surface sparse_surface(const Part& part, int resolution, double cell);
 
 }  // namespace pliant

@@ -8,9 +8,10 @@
 //              (Geevers, Mulder & van der Vegt 2018).
 // Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
 // exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that the nodal forces of a uniform stress
-// are in balance even on curved elements. With 15 nodes a small imbalance remains if a bubble coefficient of
-// the rest positions inside the solid is not zero. The mass rule is exact for degree 5 (Walkington 2000): M
-// of straight elements is exact for 4 and 10 nodes, but not for 15 nodes.
+// are in balance even on curved elements. With 15 nodes a small imbalance remains if the rest positions of an
+// element have a nonzero bubble coefficient on a face inside the solid or in the middle. The mass rule is
+// exact for degree 5 (Walkington 2000): M of straight elements is exact for 4 and 10 nodes, but not for 15
+// nodes.
 #pragma once
 
 #include <array>

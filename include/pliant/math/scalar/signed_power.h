@@ -14,7 +14,7 @@ namespace pliant {
 /// A cosine or sine of a material angle, with its sign and the logarithm of its absolute value.
 template <class U = double>
 struct Trig {
-  U x{};        ///< the value, in [-1, 1]; exactly zero at poles and seams
+  U x{};        ///< the value, in [-1, 1]; exactly 0 if the angle is a root of the cosine or sine
   U sign{};     ///< -1, 0 or 1
   U log_abs{};  ///< log |x|; kLogZero for x = 0
 };

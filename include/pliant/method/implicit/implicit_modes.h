@@ -24,7 +24,7 @@ class ImplicitModes final : public ImplicitPart {
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const override;
 
  private:
-  Oscillators oscillators_;  ///< at the factor of the laws of the last prepare()
+  Oscillators oscillators_;  ///< with the LocalWorkspace::law_factor of the last prepare()
   MatX<double> P_;           ///< one column for each mode: displacements of the attachment points of joints
   double c_ = 0;
   VecX<double> sigma_;        ///< 1 + c D + c^2 omega^2

@@ -1,7 +1,8 @@
-// The matrix A of (I - c A) k = r (implicit_part.h) for a part with nodes: linearised elasticity and damping
-// under the reference conditions W^T d = 0 (include/pliant/part/local/README.md), with W = M G0, G0 = [I,
-// -[s]x, J] and G = [I, -[p]x, J] = G0 + delta at the nodes. Energies of displacements have the stiffness K_d
-// and the damping beta K_d. Energies of positions (NodalEnergy::Of::position) have K_p + w w^T and the
+// The matrix A of (I - c A) k = r (implicit_part.h) for a part with nodes: linearised elasticity and damping,
+// D = alpha M + beta K of Eq. (11), under the reference conditions W^T d = 0
+// (include/pliant/part/local/README.md). Here W = M G0, G0 = [I, -[s]x, J] and G = [I, -[p]x, J] = G0 + delta
+// at the nodes, with the reference positions s and p = s + d. Energies of displacements have the stiffness
+// K_d and the damping beta K_d. Energies of positions (NodalEnergy::Of::position) have K_p + w w^T and the
 // damping beta V_p (NodalEnergy::add_viscosity); the dense term w w^T comes from internal pressure. Let r_q,
 // r_v be the given rates, k_q = r_q + c k_v, and v_r = (R^T c_dot, omega, q_s_dot) with the damping D_r and
 // the stiffness K_r, which are zero except for q_s. The changes k_v - r_v are x_d for the local coordinates
@@ -10,7 +11,7 @@
 //   N^T x_d + S_r x_r + P^T kappa      = -c D_r r_v - K_r e_r - Q^T e - J^T (Q e_s - E)
 //   W^T x_d + P x_r                    = 0
 //   c w^T x_d - zeta                   = -c w^T e
-// with s = 1/(c + beta) and
+// with the number s = 1/(c + beta) and
 //   S = (1 + c alpha) M + c (beta + c) K_d + c^2 K_p + c beta V_p (sparse),   N = M delta + Q,
 //   Q = (c^2 (K_p + w w^T) + c beta V_p) [0, 0, J],   S_r = G^T M G - P - P^T + c D_r + c^2 K_r + J^T Q,
 //   e = r_v + s r_q and e_a = e + s c alpha r_q of the local coordinates,
@@ -37,7 +38,7 @@ class ImplicitNodes final : public ImplicitPart {
  public:
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
-  /// Factors S if c or the factor of the laws has changed, and at every call if an energy depends on
+  /// Factors S if c or LocalWorkspace::law_factor has changed, and at every call if an energy depends on
   /// positions. If S had the stiffness of these energies at rest, long steps would fail for parts that are
   /// bent or stretched far.
   int prepare(const PartWorkspace<double>& w, double c, double t) override;
@@ -55,7 +56,7 @@ class ImplicitNodes final : public ImplicitPart {
   /// Computes S_ and its factor at positions x (m) and time t (s), and Z_. Returns the number of
   /// factorisations.
   int factor(double c, const VecX<double>& x, double t);
-  /// Adds `factor` times the masses to S_, which must contain the stiffness term, and factors S_. Adds more
+  /// Adds `factor` times the masses to S_, which must contain all other terms of S, and factors S_. Adds more
   /// mass if S_ is not definite. Returns the number of factorisations. Throws NumericalFailure if no mass
   /// suffices.
   int factor_definite(double factor, double t);
@@ -85,16 +86,16 @@ class ImplicitNodes final : public ImplicitPart {
   std::vector<Eigen::Triplet<double>> entries_;
   SparseMatrix K_, S_;       ///< lower triangles with a common pattern: K_d, and S
   MatX<double> B_, T_;       ///< border, S^-1 border
-  MatX<double> Z_;           ///< S^-1 N^T with the interpolation N of at_joints()
-  MatX<double> B_Z_, N_T_;   ///< B^T Z, N T
+  MatX<double> Z_;           ///< S^-1 times the transpose of the interpolation by at_joints()
+  MatX<double> B_Z_, N_T_;   ///< B^T Z, at_joints(T)
   MatX<double> core_fixed_;  ///< the constant part of the Schur complement of S
   VecX<double> core_scale_;  ///< powers of two that equalise the diagonal of the Schur complement
   Eigen::PartialPivLU<MatX<double>> core_;  ///< factor of the Schur complement, with scaled rows and columns
   MatX<double> J_Q_;                        ///< J^T Q over the global parameters
   MatX<double> K_s_, D_s_;                  ///< blocks of K_r and D_r of the global parameters
   MatX<double> P_, M_r_;                    ///< P, and G^T M G - P - P^T
-  VecX<double> x_;                          ///< x of the factor, m; used if the stiffness changes
-  MatX<double> J_;                          ///< J of the factor; used if the stiffness changes
+  VecX<double> x_;                          ///< positions in the current S, m; used if the stiffness changes
+  MatX<double> J_;                          ///< J at these positions; used if the stiffness changes
   MatX<double> H0_inverse_;                 ///< inverse of H0; used if x_r is not in the border
   VecX<double> e_, y_, right_;
 };

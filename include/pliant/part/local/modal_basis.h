@@ -17,7 +17,7 @@ namespace pliant {
 struct ModalBasis {
   VecX<double> mass;    ///< m_a, kg; N numbers
   Nodes X;              ///< coefficients of the rest shape: X = sum_a phi_a X_a, m
-  MatX<double> B;       ///< 3N x n, rows of all x, then y, then z; B^T M B = I; W^T d = 0 at the rest shape
+  MatX<double> B;       ///< 3N x n; rows: x of all N fields, then y, then z; B^T M B = I; W^T d = 0 at rest
   VecX<double> omega2;  ///< squared angular frequencies of the modes, increasing, 1/s^2
   /// Returns the values of all phi_a at a material point; empty for a point inside a shell.
   std::function<NodeWeights(const Part&, const Material<double>&)> weights;

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Returns G0 = [I, -[X]x, J] of n points with rest positions X: 3n x (6 + n_s), rows of all x, then y, then
-/// z.
+/// Returns G0 = [I, -[X]x, J] of n points with rest positions X: 3n x (6 + n_s). Rows: x of all n points,
+/// then y, then z.
 MatX<double> rest_frame(const Part& part, const std::vector<Material<double>>& points, const Nodes& X);
 /// Returns G0 of the spectral nodes of a basis.
 MatX<double> rest_frame(const Part& part, const ModalBasis& basis);

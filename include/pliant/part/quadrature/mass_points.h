@@ -34,11 +34,11 @@ struct MassPoints {
 
 /// Returns the mass points of a part at rest, with the masses of Part::density() and
 /// Part::mass_distribution(). Along each direction, the number of quadrature nodes is increased until
-/// doubling changes no test integral by more than 2e-14 of its scale (1e-12 where terms cancel). The test
-/// integrals are random combinations of the entries of M and g_q, at states spread over the ranges of the
-/// dynamic parameters. Then nodes that the integrals do not need are removed. doublings: number of further
-/// doublings before this removal. Throws std::invalid_argument if the rest or the initial shape folds over,
-/// or if a rule other than "sections" needs more than 2 million points.
+/// doubling changes no test integral by more than 2e-14 of its scale. A change of at most 1e-12 is accepted
+/// if finer rules do not halve it. The test integrals are random combinations of the entries of M and g_q, at
+/// states spread over the ranges of the dynamic parameters. Then nodes that the integrals do not need are
+/// removed. doublings: number of further doublings before this removal. Throws std::invalid_argument if the
+/// rest or the initial shape folds over, or if a rule other than "sections" needs more than 2 million points.
 MassPoints place_mass_points(const Part& part, int doublings = 0);
 
 /// Returns the volume of a solid (m^3) or the area of a shell (m^2) at rest.
