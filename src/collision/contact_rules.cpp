@@ -46,7 +46,8 @@ ContactRules::ContactRules(const Model& model)
   if (!(settings.longest_step > 0) || !std::isfinite(settings.longest_step))
     fail_number("the longest step (s)", settings.longest_step, "a number > 0");
   if (!(settings.interval > 0) || !std::isfinite(settings.interval))
-    fail_number("the interval of clusters (s)", settings.interval, "a number > 0");
+    fail_number("the interval (s) in which bodies that may meet step together", settings.interval,
+                "a number > 0");
   if (const double tolerance = settings.tolerance.value_or(kMinContactTolerance);
       !(tolerance >= kMinContactTolerance && tolerance <= kMaxContactTolerance))
     fail_number("the tolerance", tolerance, "a number from 1e-14 to 0.1");

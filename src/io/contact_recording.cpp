@@ -72,7 +72,7 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
 
 std::vector<Column> contact_columns() {
   std::vector<Column> columns{
-      {"t", "s", "time of the recorded state at the end of the step"},
+      {"t", "s", "time of the recorded state; the row is about the last step before this time"},
       {"a", "1", "first part; in the .npy table its index, from 0"},
       {"b", "1",
        "second part, plane or obstacle; in the .npy table its index, with planes after parts and obstacles "
@@ -87,8 +87,9 @@ std::vector<Column> contact_columns() {
 }
 
 std::vector<Column> joint_impulse_columns() {
-  std::vector<Column> columns{{"t", "s", "time of the recorded state at the end of the step"},
-                              {"joint", "1", "joint; in the .npy table its index, from 0"}};
+  std::vector<Column> columns{
+      {"t", "s", "time of the recorded state; the row is about the last step before this time"},
+      {"joint", "1", "joint; in the .npy table its index, from 0"}};
   add_axes(columns, "impulse", "N s",
            "reaction of the joint to contact impulses of the step, on its first side, world");
   add_axes(columns, "angular_impulse", "N m s",

@@ -50,7 +50,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// Two solids in a scene without gravity.
+/// Two solids that may touch. The tests search for contacts only; nothing moves.
 struct Pair {
   Pair(const Kind& a, const Kind& b)
       : part_a(body.add(make_part("a", a.shape, a.chain, 1000)).rest(a.rest)),
@@ -126,13 +126,13 @@ TEST_CASE("the least gap of two solids that are not convex is the least distance
         below.note(sampled - gap);
       }
       CHECK(above < 1e-12);
-      CHECK(below < 2.5e-3);  // the distance of samples from each other is about 1 cm
+      CHECK(below < 2.5e-3);  // neighbouring samples of one surface are about 1 cm apart
     }
 }
 
 TEST_CASE(
-    "smooth solids that are not convex touch with opposite normals, and with no gap after their gap is "
-    "closed",
+    "smooth solids that are not convex, moved together by their gap, have a contact with gap 0 and opposite "
+    "normals",
     "[contact][long]") {
   Draws draws(6);
   for (const Kind& a : kinds())
@@ -245,8 +245,9 @@ TEST_CASE("solids that are not convex lie on each other on several points around
   }
 }
 
-TEST_CASE("edges of separate solids that pass each other do not touch", "[contact][long]") {
-  // Two wedges lean away from each other. The common normal of their edges has a negative gap.
+TEST_CASE("no contact of edges is found between separate solids", "[contact][long]") {
+  // Two tapered and twisted boxes, about 2 cm apart. The gap along a common normal of two of their edges can
+  // be negative although the solids are separate.
   const Kind wedge{"wedge",
                    "box",
                    {"taper", "twist"},
@@ -262,7 +263,8 @@ TEST_CASE("edges of separate solids that pass each other do not touch", "[contac
   CHECK(apart > 10);
 }
 
-TEST_CASE("contacts of pointed superquadrics are found where their surfaces overlap", "[contact][long]") {
+TEST_CASE("the least gap of two supertoroids is not larger than the sampled distance of their surfaces",
+          "[contact][long]") {
   // For exponents up to 1.4, common normals find the contacts; above 1.4, a search on both surfaces does.
   Draws draws(11);
   for (const double exponent : {0.65, 1.3, 1.5, 1.8}) {
@@ -301,7 +303,7 @@ TEST_CASE("solids with a full taper touch another part", "[contact][long]") {
     }
 }
 
-TEST_CASE("two tori that overlap by more than half their thickness touch", "[contact]") {
+TEST_CASE("two tori that overlap by less or more than half their thickness touch", "[contact]") {
   const Kind& torus = kinds()[0];  // a tube of radius 0.02 m
   for (const double overlap : {0.4, 0.7}) {
     CAPTURE(overlap);

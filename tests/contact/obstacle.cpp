@@ -100,8 +100,9 @@ TEST_CASE("a flat floor of triangles acts as a plane for rolling, sliding and bo
   }
 }
 
-TEST_CASE("a ball rolls over a ridge and through a groove without leaving the surface or penetrating it",
-          "[contact]") {
+TEST_CASE(
+    "a ball rolls over a ridge, and through a groove without leaving the surface, and penetrates neither",
+    "[contact]") {
   for (const double slope : {0.2, -0.2}) {  // the first mesh is a ridge, the second a groove
     const Mesh roof = sheet(12, 0.2, [&](double x, double y) -> Vec3<double> {
       return {3 * x, y, -slope * std::abs(3 * x)};

@@ -217,14 +217,15 @@ TEST_CASE("IFToMM A01: a point pendulum released horizontally keeps its period a
 }
 
 TEST_CASE("N43: ranks of closed loops", "[loops]") {
-  SECTION("four hinges of a planar four-bar linkage: 20 rows of rank 17, one free motion of 18") {
+  SECTION(
+      "four hinges of a planar four-bar linkage: 20 rows of rank 17, so that 1 of 18 velocities is free") {
     MultiBody body;
     four_bar(body);
     const Simulation simulation(body, "rk4");
     CHECK(simulation.model().n_v() == 18);
     CHECK(redundant(simulation) == 3);
   }
-  SECTION("Bricard's mechanism: 30 rows of rank 29, one free motion of 30") {
+  SECTION("Bricard's mechanism: 30 rows of rank 29, so that 1 of 30 velocities is free") {
     MultiBody body;
     bricard(body);
     const Simulation simulation(body, "rk4");

@@ -15,8 +15,9 @@ namespace pliant {
 namespace step_length {
 /// Safety factor, and smallest ratio of the length of a step to the length of the previous step.
 inline constexpr double kSafety = 0.8, kMinFactor = 0.2;
-/// Safety factor for errors of order 0. An error of order 0 is the known ratio of the step length to the
-/// largest length with contacts. The next length may then be below kMinFactor times the last length.
+/// Safety factor for errors of order 0. An error of order 0 is the ratio of the step length to
+/// longest_contact_step(), which is known exactly. The next length may then be below kMinFactor times the
+/// last length.
 inline constexpr double kExactSafety = 0.99;
 /// Exponent of the previous error in the proportional-integral controller, times order + 1.
 inline constexpr double kIntegral = 0.2;

@@ -37,7 +37,7 @@ double first_step(StepContext& step, const ErrorScale& scale, int order);
 /// error of the step is at most 1 (in tolerances), accepts the step and stores the next length in state.h;
 /// otherwise rejects the step and repeats it with a shorter length. attempt() advances the state by state.h
 /// and returns the StepError. Returns true if a step was accepted. Returns false, with the state at the start
-/// of the step, if the length would be min_length (s) or less.
+/// of the step, if the length would be min_length (s) or less and the step would not reach `end`.
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
                           StepCounters& counters, Attempt&& attempt) {

@@ -19,7 +19,8 @@ namespace pliant {
 
 namespace detail {
 
-/// Weight of the rows of velocities on which no contact depends.
+/// Weight of a row before raise_weight() raises it. Rows of velocities on which no contact depends keep this
+/// weight, so that the elimination does not use them as pivots of other columns.
 inline constexpr double kLeastWeight = 0x1p-200;
 
 /// Inserts i into a sorted list unless the list contains it.

@@ -1,4 +1,4 @@
-// The reference conditions at rest, and modes under them.
+// The reference conditions W^T d = 0 at the rest shape, and the modes of a stiffness that satisfy them.
 #include <pliant/part/local/mode_conditions.h>
 
 #include <stdexcept>

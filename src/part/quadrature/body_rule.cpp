@@ -68,9 +68,9 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
 }
 
 /// Returns the first level along one direction at which two further levels change no moment by more than
-/// kMomentTolerance. The other directions have coarse nodes. If there is no such level, the result is the
-/// last level whose change was less than half of the smallest change before, and `remaining` becomes this
-/// change if it was smaller.
+/// kMomentTolerance. The other directions have coarse nodes. If there is no such level, selects the first
+/// level, and then every level whose change is less than half of the change of the level selected before.
+/// The result is the level selected last; `remaining` becomes its change if `remaining` was smaller.
 std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
                              std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;

@@ -117,13 +117,14 @@ RestShape::RestShape(const Part& whole, const MassDistribution* mass_distributio
 }
 
 void RestShape::find_kinks() {
-  // Without bounded exponents a shape has the trigonometric map. Its integrands have kinks at u or v = 45
-  // degrees only, for all exponents.
+  // Without bounded exponents a shape has the trigonometric map. For all exponents its integrands vary
+  // fastest at u or v = 45 degrees, which is the default of Kinks.
   if (!part.shape().bounded_exponents()) return;
   // In the radial map, the edges of a superellipsoid move over the material when its exponents change. With
   // y = log |tan| of the angles u and v at rest, and exponents eps1 and eps2 at rest: an edge is at y(v) = 0,
-  // and others are between y(u) = 0 and y(u) = (log 2 / 2) (eps2_now - eps2) / eps1. Kinks::width is
-  // proportional to the exponents.
+  // and others are between y(u) = 0 and y(u) = (log 2 / 2) (eps2_now - eps2) / eps1, with the
+  // present value eps2_now. Kinks::width is proportional to the ratio of the least exponent to its rest
+  // value.
   std::vector<Range> values;
   std::vector<double> at_rest;
   for (int i = 0; i < part.parameters().size(); ++i) {

@@ -1,7 +1,7 @@
-// Projection of filtered rates (implicit_part.h): the rows of joints, of strings that pull and of limits that
-// push regain the values that these rows had before the filter. The correction of the rates is the smallest
-// correction in a metric: the inverse of the compliance for implicit parts, the mass matrix M for other
-// parts.
+// Projection of filtered rates (implicit_part.h): corrects the rates so that their products with the rows of
+// joints, of strings that pull and of limits that push are those from before the filter. The correction of
+// the rates is the smallest correction in a metric: the inverse of the compliance for implicit parts, the
+// mass matrix M for other parts.
 #pragma once
 
 #include <pliant/method/implicit/implicit_part.h>
