@@ -67,9 +67,7 @@ bool CurvedHull::exists(const Part& part, const ParameterValues<double>& values)
 }
 
 CurvedHull::CurvedHull(const Part& part, const ParameterValues<double>& values)
-    : part_(part), values_(values), shape_(part.shape()), image_(part, values) {
-  last_normals_.fill(Vec3<double>::Zero());
-}
+    : part_(part), values_(values), shape_(part.shape()), image_(part, values) {}
 
 /// Returns the support point of a piece of the undeformed shape in the direction m.
 Vec3<double> CurvedHull::undeformed(const Vec3<double>& m, int piece) const {
@@ -77,12 +75,19 @@ Vec3<double> CurvedHull::undeformed(const Vec3<double>& m, int piece) const {
 }
 
 Vec3<double> CurvedHull::support(const Vec3<double>& m, int piece, Mat3<double>* slope) const {
-  Vec3<double>& normal = last_normals_[static_cast<std::size_t>(piece)];
-  if (normal.isZero(0)) normal = image_.start(m);
-  const ImagePoint point = image_.farthest(m, {piece, piece}, 0, normal, slope != nullptr);
-  normal = point.normal;
-  if (slope != nullptr) *slope = point.slope;
-  return point.x;
+  LastPoint& last = last_points_[static_cast<std::size_t>(piece)];
+  if (m != last.m) {
+    const Vec3<double> start = last.m.isZero(0) ? image_.start(m) : last.point.normal;
+    last = {m, image_.farthest(m, {piece, piece}, 0, start, true)};
+  }
+  if (slope != nullptr) *slope = last.point.slope;
+  return last.point.x;
+}
+
+Vec3<double> CurvedHull::rough_support(const Vec3<double>& m, int piece) const {
+  PartEvaluation::ChainImages images;
+  part_.apply_chain(undeformed(image_.start(m), piece).replicate<1, 4>(), values_, images);
+  return images.x.col(0);
 }
 
 Vec3<double> CurvedHull::end_face_normal(int piece) const {

@@ -35,6 +35,9 @@ class CurvedHull {
   /// Returns the point (m) of the image of a piece that is farthest in the direction m (unit vector), at
   /// least among the points near it. slope: if given, the derivative of this point by m, m.
   Vec3<double> support(const Vec3<double>& m, int piece, Mat3<double>* slope) const;
+  /// Returns a point of the image of a piece that is nearly farthest in the direction m, without a search:
+  /// the farthest point of the affine map that touches the chain at the centre has the same material point.
+  Vec3<double> rough_support(const Vec3<double>& m, int piece) const;
   /// Returns the outward unit normal of end face 0 or 1.
   Vec3<double> end_face_normal(int piece) const;
   /// Whether the part is convex, tested at samples: a surface with one piece must be curved outwards, sides
@@ -78,8 +81,12 @@ class CurvedHull {
   const ParameterValues<double>& values_;
   const ShapeInterface& shape_;
   ImageSupport image_;
-  // Normals of the last support points: the search for the next ones starts from them.
-  mutable std::array<Vec3<double>, static_cast<std::size_t>(kMaxHullPieces)> last_normals_;
+  /// The last support point of a piece and its direction; the search for the next one starts from it.
+  struct LastPoint {
+    Vec3<double> m = Vec3<double>::Zero();
+    ImagePoint point;
+  };
+  mutable std::array<LastPoint, static_cast<std::size_t>(kMaxHullPieces)> last_points_;
 };
 
 }  // namespace pliant

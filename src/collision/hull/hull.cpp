@@ -60,8 +60,8 @@ Hull::Hull(const Part& part, const ParameterValues<double>& values, Convexity co
       map_(part.parameters().links().empty() ? Map::identity
            : is_affine(part)                 ? Map::affine
                                              : Map::curved),
-      F_(Mat3<double>::Identity()),
-      curved_(part, values) {
+      F_(Mat3<double>::Identity()) {
+  if (map_ == Map::curved) curved_.emplace(part, values);
   if (map_ == Map::affine) F_ = part.chain_gradient(Eigen::Matrix3Xd::Zero(3, 1), values).front();
 }
 
@@ -74,7 +74,7 @@ Vec3<double> Hull::support(const Vec3<double>& m, int piece) const {
     case Map::curved:
       break;
   }
-  return curved_.support(m.normalized(), piece, nullptr);
+  return curved_->support(m.normalized(), piece, nullptr);
 }
 
 Vec3<double> Hull::support(const Vec3<double>& m) const {
@@ -84,8 +84,17 @@ Vec3<double> Hull::support(const Vec3<double>& m) const {
   return best;
 }
 
+Vec3<double> Hull::rough_support(const Vec3<double>& m) const {
+  if (rough_is_exact()) return support(m);
+  const Vec3<double> direction = m.normalized();
+  Vec3<double> best = curved_->rough_support(direction, 0);
+  for (int piece = 1; piece < pieces(); ++piece)
+    if (const Vec3<double> x = curved_->rough_support(direction, piece); m.dot(x) > m.dot(best)) best = x;
+  return best;
+}
+
 Vec3<double> Hull::support(const Vec3<double>& m, int piece, Mat3<double>& slope) const {
-  if (map_ == Map::curved) return curved_.support(m.normalized(), piece, &slope);
+  if (map_ == Map::curved) return curved_->support(m.normalized(), piece, &slope);
   using D = Dual<3>;
   const Vec3<double> pulled = F_.transpose() * m;
   const Vec3<D> x = shape_->support(
@@ -102,7 +111,7 @@ Vec3<double> Hull::end_face_normal(int piece) const {
   const Vec3<double> z = (piece == 0 ? 1.0 : -1.0) * Vec3<double>::UnitZ();
   if (map_ == Map::identity) return z;
   if (map_ == Map::affine) return (F_.inverse().transpose() * z).normalized();
-  return curved_.end_face_normal(piece);
+  return curved_->end_face_normal(piece);
 }
 
 Vec3<double> Hull::extents() const {
@@ -184,7 +193,7 @@ void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, int
     else
       add_farthest(m, support(m, piece), limits, points);
   }
-  if (has_local_points) curved_.add_local_points(m, end_face, limits, points);
+  if (has_local_points) curved_->add_local_points(m, end_face, limits, points);
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 // chains Newton's method finds the support points (curved_hull.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "curved_hull.h"
@@ -42,6 +43,10 @@ class Hull {
   Vec3<double> support(const Vec3<double>& m, int piece) const;
   /// Returns the point (m) of the hull that is farthest in the direction m.
   Vec3<double> support(const Vec3<double>& m) const;
+  /// Returns a point of the hull that is nearly farthest in the direction m: support(m) without a search.
+  Vec3<double> rough_support(const Vec3<double>& m) const;
+  /// Whether rough_support() is support().
+  bool rough_is_exact() const { return map_ != Map::curved; }
   /// Returns support(m, piece). slope: its derivative by m, m; symmetric and positive semidefinite, with the
   /// radii of curvature as eigenvalues for |m| = 1.
   Vec3<double> support(const Vec3<double>& m, int piece, Mat3<double>& slope) const;
@@ -82,7 +87,7 @@ class Hull {
   Convexity convexity_;
   enum class Map { identity, affine, curved } map_;
   Mat3<double> F_;  // matrix of an affine map
-  CurvedHull curved_;
+  std::optional<CurvedHull> curved_;  // of a curved map
 };
 
 }  // namespace pliant

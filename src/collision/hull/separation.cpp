@@ -102,6 +102,10 @@ struct Side {
   double value(const Vec3<double>& n) const {
     return n.dot(origin + part.R * part.hull.support(part.into_body(side * n)));
   }
+  /// Returns n . x of Hull::rough_support().
+  double rough_value(const Vec3<double>& n) const {
+    return n.dot(origin + part.R * part.hull.rough_support(part.into_body(side * n)));
+  }
   /// Appends the points nearest to the other part at n. All points of an end face with the normal n are one
   /// entry. equal: values of n . x that differ by at most this (m) are equal.
   void find_nearest(const Vec3<double>& n, double equal, std::vector<Nearest>& found) const {
@@ -278,6 +282,8 @@ class SeparationSearch {
         size_(std::max(a.hull.size(), b.hull.size())) {}
 
   double s(const Vec3<double>& n) const { return a_.value(n) - b_.value(n); }
+  /// Returns an upper bound of s(n) that is near s(n), without a search on deformed parts.
+  double rough_s(const Vec3<double>& n) const { return a_.rough_value(n) - b_.rough_value(n); }
 
   /// Returns whether n, a normal of an end face, is certainly a local maximum of s: the sets of nearest
   /// points of both parts overlap in their projection along n. Otherwise turns n away from the face.
@@ -381,8 +387,10 @@ Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) 
   // The start is the best one of the line of centres, the axes of the parts and the normals of end faces.
   Separation best{Vec3<double>::UnitZ(), -std::numeric_limits<double>::infinity()};
   bool at_end_face = false;
+  const bool is_rough = !a.hull.rough_is_exact() || !b.hull.rough_is_exact();
   auto consider = [&](const Vec3<double>& n, bool is_end_face) {
-    const double s = search.s(n);
+    double s = search.rough_s(n);
+    if (is_rough && s > max_gap) s = search.s(n);
     if (s > best.gap || (s == best.gap && is_end_face)) {
       best = {n, s};
       at_end_face = is_end_face;
@@ -398,6 +406,7 @@ Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) 
     for (int k = 0; part->hull.has_end_faces() && k < 2; ++k)
       if (consider((part == &a ? -1.0 : 1.0) * (part->R * part->hull.end_face_normal(k)), true)) return best;
   }
+  if (is_rough) best.gap = search.s(best.normal);
   const double deep = -kDeep * std::min(a.thickness, b.thickness);
   auto ascend_from = [&](const Vec3<double>& n) {
     if (const Separation found = search.ascend(n, max_gap); found.gap > best.gap) best = found;
