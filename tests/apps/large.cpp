@@ -41,7 +41,7 @@ Usage usage_of_children() {
 // Measured: see "Many parts" in bench/README.md.
 TEST_CASE("memory and time of a scene grow by little for each equal part", "[long]") {
   constexpr int n = 100'000;
-  constexpr double max_bytes = 5000, max_seconds = 150e-6;  // per part
+  constexpr double max_bytes = 4000, max_seconds = 150e-6;  // per part
   const TestFolder place;
   write_scene(place, n);
   for (const char* command : {"check large.json", "run large.json --quiet -o out"}) {
