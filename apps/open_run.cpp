@@ -41,7 +41,8 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.scene->width = run.record.width;
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
-  pliant::compare_layout(folder, *run.model);  // after a mismatch of version or scene, no run can continue
+  // Not in the `try` below, because a run with another version or scene cannot be continued.
+  pliant::compare_layout(folder, *run.model);
   try {
     run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
   } catch (const pliant::RecordingMismatch& fault) {

@@ -30,7 +30,8 @@ std::string printed(const char* format, double a, double b = 0) {
   return text;
 }
 
-// Keeps the state of a stage. Derived classes decide when and how this state is shown.
+// Keeps the name of a stage, its amount of work and the amount done. Derived classes decide when and how they
+// are shown.
 class StageProgress : public pliant::Progress {
  public:
   void begin(const std::string& stage, double total, const std::string& unit) override {

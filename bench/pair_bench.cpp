@@ -9,10 +9,10 @@
 // time of a query is measured in two orders of the poses:
 //   cold  successive queries are at poses of different sequences
 //   warm  successive queries are at successive poses of a sequence, which are nearly equal
-// Columns of pair_poses.csv: pair, band, sequence, shape and three sizes (m) of each body, centre (m) and
-// quaternion w x y z of each body, gap (m). The sizes of an ellipsoid are its semi-axes. The sizes of other
-// bodies are the radius, again the radius, and half the height; for a capsule the height is that of its
-// straight side. A sequence contains successive poses.
+// Columns of pair_poses.csv: pair, band (interval of gaps), sequence, shape and three sizes (m) of each body,
+// centre (m) and quaternion w x y z of each body, gap (m). The sizes of an ellipsoid are its semi-axes. The
+// sizes of other bodies are the radius, again the radius, and half the height; for a capsule the height is
+// that of its straight side. A sequence contains successive poses.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -25,14 +25,14 @@ using namespace pliant;
 
 namespace {
 
-/// Work per triangle. On average there are 0.5 nodes and 1.5 edges per triangle.
+/// Multiply-adds and bytes per triangle. On average there are 0.5 nodes and 1.5 edges per triangle.
 struct Work {
   double multiply_adds, bytes;
 };
-/// Returns the bytes per triangle of the nodal data. corners: of an element; elements: number of elements per
-/// triangle. For each corner the evaluation reads coordinates and a node number, writes the force of the
-/// corner to a buffer, and later reads the position of the force in the buffer and the force. For each node
-/// it reads and writes the force.
+/// Returns the bytes per triangle of the nodal data. corners: number of corners of an element; elements:
+/// number of elements per triangle. For each corner the evaluation reads coordinates and a node number,
+/// writes the force of the corner to a buffer, and later reads the position of the force in the buffer and
+/// the force. For each node it reads and writes the force.
 double gather_bytes(int corners, double elements) {
   return elements * corners * (3 * 8 + 2 * 3 * 8 + 4 + 4) + 0.5 * 2 * 3 * 8;
 }

@@ -30,8 +30,8 @@ struct CheckCommand {
 // Returns an estimate of the wall-clock time of a run, s, or 0 for a run without steps. Performs steps of the
 // run for 0.4 s, or for 0.7 s if bodies can touch. If these steps do not reach the end of the run, their time
 // is extrapolated. If bodies can touch, the whole time is used, because the first impacts may cost more than
-// all later contacts. Otherwise the first quarter is left out, because the first steps with a tolerance are
-// short.
+// all later contacts. Otherwise the first quarter of the 0.4 s is left out, because the first steps with a
+// tolerance are short.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   const bool contact = simulation.model().body().contact.active;
   const double trial = contact ? 0.7 : 0.4, first = contact ? 0 : trial / 4;

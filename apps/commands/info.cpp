@@ -249,9 +249,7 @@ int info(const SceneOptions& options) {
 void add_info(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SceneOptions>();
   CLI::App* command = app.add_subcommand(
-      "info",
-      "Describe a scene: parts, degrees of freedom, mass, computations that the scene does not need, largest "
-      "stable step");
+      "info", "Describe a scene: parts, degrees of freedom, mass, skipped computations, largest stable step");
   add_scene_options(*command, *options);
   command->footer("Example:\n  pliant info scenes/pull.json --set /time/step=0.01");
   command->callback([options, &action] { action = [options] { return info(*options); }; });

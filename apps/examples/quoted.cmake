@@ -40,7 +40,7 @@ while(TRUE)
 endwhile()
 
 page_block(${SOURCE}/scenes/README.md "## Mistakes" "```json" scene)
-page_block(${SOURCE}/scenes/README.md "`pliant check scene.json` says" "```" faults)
+page_block(${SOURCE}/scenes/README.md "`pliant check scene.json` prints" "```" faults)
 file(MAKE_DIRECTORY ${FOLDER})
 file(WRITE ${FOLDER}/scene.json "${scene}")
 execute_process(COMMAND ${PROGRAM} check scene.json WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_QUIET)

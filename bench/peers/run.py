@@ -27,7 +27,7 @@ RUN = "problem,engine,formulation,method,step_or_tolerance,error".split(",")
 COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per_s,error,failed".split(",")
 # The settings of a method, from coarse to fine, are its ladder. A ladder ends after
 # - an error below SMALLEST,
-# - STALLED successive runs below ROUNDING without an improvement of the smallest error of the ladder,
+# - STALLED successive runs with errors below ROUNDING, none of which is smaller than all earlier errors of the ladder,
 # - FAILURES failed runs,
 # - a failed run that ends more than 4 times the time limit after the start of the ladder,
 # - a run that crashed or was killed,

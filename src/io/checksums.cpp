@@ -196,7 +196,8 @@ class RowCheck {
   bool add_rows(std::int64_t end, std::uint32_t expected) {
     if (!damage_.empty()) return false;
     if (end < first_) {
-      damage_ = table_.path().string() + " has checksums of fewer rows than before, at row " +
+      damage_ = table_.path().string() +
+                ": its checksums count fewer rows up to a state than up to the state before, " +
                 std::to_string(first_);
       return false;
     }

@@ -34,7 +34,8 @@ void require_columns(const NpyReader& table, const std::vector<Column>& columns)
 }
 
 /// Writes the table `from` as the CSV file `to`. The first column is the time. The next `names` columns are
-/// indices into names_of and become names. Throws RecordingMismatch if the table does not fit.
+/// indices into names_of and become names. Throws RecordingMismatch if the table has another number of
+/// columns, or an index without a name.
 void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<Column>& columns, const std::vector<std::string>& names_of,
                  std::size_t names) {

@@ -76,7 +76,7 @@ std::vector<Column> limit_columns(const Model& model, const PartModel& part) {
 std::vector<Column> cluster_columns() {
   return {{"step_size.*", "s", "length of the next step of the cluster of the part"},
           {"error.*", "1", "error of the last step of the cluster of the part / tolerance"},
-          {"contact_residual.*", "m/s", "residual of the contact laws in that step"},
+          {"contact_residual.*", "m/s", "residual of the contact laws in the last step of the cluster"},
           {"supports_age.*", "1", "consecutive steps of the cluster of the part with a warm start"}};
 }
 
@@ -138,7 +138,8 @@ std::vector<Column> contact_cache_columns() {
           {"x", "m", "contact point, in the frame of part a"},
           {"y", "m", ""},
           {"z", "m", ""},
-          {"force_x", "N", "mean force on part a in the last step (or its second half), world"},
+          {"force_x", "N",
+           "mean force on part a in the last step (with step doubling: in its last half or third), world"},
           {"force_y", "N", ""},
           {"force_z", "N", ""},
           {"lasting", "1", "1 if this force acted during the whole step, else 0"}};

@@ -10,6 +10,7 @@ namespace pliant {
 namespace {
 /// Largest accepted ratio of two differences. The first is between the result of a full explicit step and the
 /// recorded state `high`. The second is between the result of an explicit half step and the interpolated q.
+/// With a larger ratio, step_between() returns no state.
 constexpr double kNearer = 0.1;
 }  // namespace
 

@@ -11,7 +11,7 @@ struct Count {
   long StepCounters::*of_steps;
   long Counters::*of_parts;
   const char* meaning;
-  bool repeats = false;  ///< whether a resumed run does this work again, so that the count has no column
+  bool repeats = false;  ///< whether a resumed run repeats computations; the count then has no column
 
   long& in(RunWork& work) const { return of_steps != nullptr ? work.steps.*of_steps : work.parts.*of_parts; }
   long in(const RunWork& work) const {

@@ -18,7 +18,8 @@ namespace fast_motion {
 constexpr Eigen::Index kMaxVectors = 160, kMaxNumbers = 20'000'000, kFewVectors = 24;
 /// Largest change of a coordinate in a difference, relative to its scale.
 constexpr double kDifference = 1e-6;
-/// A new vector whose norm is below this share of largest_ consists of errors of the differences.
+/// A new vector whose norm is below this share of largest_ consists of errors of the differences; the Krylov
+/// space is then complete.
 constexpr double kVanished = 1e-7;
 /// Let r (1/s) be the square root of the largest ratio of an acceleration to the scale of its coordinate.
 /// Derivatives of the accelerations up to kNoise r^2 (by coordinates) and kNoise r (by velocities) are errors

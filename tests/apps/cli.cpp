@@ -1,4 +1,5 @@
 // The program `pliant` as a separate process: exit codes, messages, files in folders, and signals.
+// I47 to I59 and N42 in names of tests are rows of the tables in tests/README.md.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>

@@ -1,5 +1,6 @@
 // These scenes once crashed, or reported success with a meaningless motion. Each run must now succeed, or end
-// with a message that names the cause, the time and a remedy that works.
+// with a message that names the cause, the time and a remedy that works. include/pliant/simulate/README.md
+// defines the energy that could move.
 #include <cmath>
 #include <string>
 
@@ -72,7 +73,8 @@ TEST_CASE("energies that grow without bound end a run with code 5, names and a s
   CHECK(place.record("tumbling")["monitors"]["balance_share"] < 0.5);  // before the failure
   CHECK_FALSE(has(place.motion("tumbling"), "nan"));
   const std::string step = recommended_step(too_long.err);
-  // On a slow machine, the time for trial runs may end before a trial is accurate or complete.
+  // The program tries shorter steps. On a slow machine, the time for the trials may end before a trial is
+  // accurate or complete.
   if (step.empty())
     CHECK(has(too_long.err, "they did not finish with"));
   else if (has(too_long.err, "but the error of its energy balance is"))
@@ -88,7 +90,7 @@ TEST_CASE("open joints that contradict each other do not gain energy") {
   CHECK_FALSE(has(place.motion("out"), "nan"));
 }
 
-TEST_CASE("limits that contacts press against do not gain energy") {
+TEST_CASE("parameters that contacts press against their limits do not gain energy") {
   const TestFolder place;
   CHECK(run(place, "limits_gain_energy").code == 0);
   CHECK(place.record("out")["monitors"]["balance_share"] < 0.1);  // the method is of order 1

@@ -1,5 +1,6 @@
 // Accelerations, their directional derivatives, the ledger and the hash of a state, and models that are
 // refused.
+// N61 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <Eigen/LU>
@@ -59,7 +60,7 @@ TEST_CASE("directional derivatives of the accelerations agree with finite differ
           "[dynamics]") {
   MultiBody body;
   busy_scene(body);
-  // jvp treats user-defined forces as constant.
+  // The directional derivative (Dynamics::jvp) treats user-defined forces as constant.
   MultiBody without;
   busy_scene(without);
   for (const auto& force : without.forces())

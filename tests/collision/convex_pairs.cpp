@@ -65,11 +65,12 @@ struct Pair {
   }
 };
 
-/// Returns the support function of a part at the origin, m, from its parameters. m: direction, body frame.
+/// Returns the support function (metres) of a part at the origin, from its parameters. m: direction, body
+/// frame.
 double support(const Part& part, const Vec3<double>& m) {
   const ParameterValues<double> values = part.parameters().rest();
   const double shear = part.parameters().find("shear.sx") >= 0 ? 0.5 : 0.0;
-  const Vec3<double> pulled(m[0], m[1], m[2] + shear * m[0]);  // F^T m
+  const Vec3<double> pulled(m[0], m[1], m[2] + shear * m[0]);  // F^T m; F: matrix of the shear
   double h = -std::numeric_limits<double>::infinity();
   for (int piece = 0; piece < part.shape().hull_pieces(); ++piece)
     h = std::max(h,

@@ -1,5 +1,6 @@
 // Contacts are compared with closed forms. The closed forms of ellipsoids are compared with the search for
 // other shapes, and the pairs of the broad phase with all pairs of near boxes.
+// N55 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Contact of parts with planes and with each other: closed forms of friction, impacts and rolling, rest, and
 // conservation laws of impacts.
+// N49 to N58 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

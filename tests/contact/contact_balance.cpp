@@ -1,6 +1,7 @@
 // Energy and momentum in contact: inelastic, frictional motion gains no energy beyond the error of a step,
 // and a rod in Painleve's paradox jams. An impact on a springboard follows the closed form. A joint that
 // pulls a part through a floor stays closed, and the contact residual is reported.
+// N57 and N59 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

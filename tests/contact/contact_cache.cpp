@@ -174,7 +174,7 @@ TEST_CASE("an isolated contact does not start from the contact cache, whatever i
     simulation.set_state(state);
     simulation.step(kStep);
     CHECK(simulation.state().v.norm() < 1e-12);
-    REQUIRE(simulation.state().contact_cache.size() == 1);  // for the prediction of its impulse
+    REQUIRE(simulation.state().contact_cache.size() == 1);  // stored to predict its impulse
     CHECK(simulation.state().contact_cache[0].force.z() == Approx(weight(body)).epsilon(1e-9));
   }
 }

@@ -1,5 +1,6 @@
 // Impulses of many simultaneous contacts: Coulomb's law at each contact, checked with the resulting
 // velocities.
+// N55 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // Fast parts of three shapes against a thin part, a plane, a mesh and an ellipsoid: none passes through.
+// N53 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -221,7 +221,8 @@ TEST_CASE("with many parts that may meet the steps are short and counted as unco
   MultiBody body;
   body.contact.active = true;
   body.contact.friction = 0.5;
-  body.contact.interval = 1;  // s; no interval of clusters ends during the runs, which would end a step
+  // No interval of clusters (include/pliant/simulate/README.md) ends in these runs; its end would end a step.
+  body.contact.interval = 1;  // s
   body.contact.planes.emplace_back().name = "floor";
   for (int i = 0; i < 9; ++i)
     body.add<Primitive<Box>>("box" + std::to_string(i))
@@ -285,7 +286,8 @@ TEST_CASE("the motion of a plane that returns to its position within a step is d
   CHECK(simulation.step_counters().steps > 40);
 }
 
-TEST_CASE("the longest uncontrolled step does not affect controlled steps", "[error][contact]") {
+TEST_CASE("the limit of uncontrolled steps (longest_step) does not affect controlled steps",
+          "[error][contact]") {
   auto end = [](double longest) {
     MultiBody body;
     hill(body);

@@ -1,6 +1,7 @@
 // Contact with planes that are active for a short time, and with planes and parts that move to and fro within
 // a step. The order in which two parts are added does not matter. A small part deep in a large part is
 // separated slowly.
+// N54 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>

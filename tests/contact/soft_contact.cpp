@@ -1,5 +1,6 @@
 // Contact of parts with local deformation: contacts of their nodes with planes, and of their surface meshes
 // with other parts and obstacles.
+// N53 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Laws of every global deformation in AllDeforms (deform/all_deforms.h): identity, inverse, derivatives,
 // determinants, and the kernel that applies a link of a chain.
+// N11 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

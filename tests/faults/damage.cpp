@@ -1,5 +1,6 @@
 // One bit is flipped in a file of a run. `pliant verify` names the damaged file. `pliant run --resume`
 // refuses the run and names the file, or gives the files of an uninterrupted run.
+// I55 in the name of a test is a row of the table in tests/README.md.
 #include <algorithm>
 
 #include "catch.h"

@@ -1,5 +1,6 @@
 // System calls on the files of a run fail. The run ends with code 7 and a message, or does not need the call.
 // The resumed run gives the files of an uninterrupted run.
+// I51 in the name of a test is a row of the table in tests/README.md.
 #include <algorithm>
 #include <cerrno>
 
@@ -138,7 +139,7 @@ void check_failures(const std::string& options, const std::string& outputs, std:
 
 }  // namespace
 
-TEST_CASE("I51: a call on a file that fails ends the run with code 7, and the run can be resumed") {
+TEST_CASE("I51: a run with a failing call on a file ends with code 7 or is complete, and can be resumed") {
   check_failures("--end 0.02 --threads 1", "--obj --quiet", 40);
 }
 TEST_CASE(

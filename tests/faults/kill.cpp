@@ -1,4 +1,5 @@
 // A run is killed at one of its system calls. The resumed run gives the files of an uninterrupted run.
+// I53 in the name of a test is a row of the table in tests/README.md.
 #include <algorithm>
 
 #include "catch.h"

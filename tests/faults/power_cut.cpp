@@ -1,5 +1,6 @@
 // After a power cut, the last rows of tables may be missing or zero, because they were not yet on the disk.
 // The run is resumed from a state that is whole in all tables, and gives the files of an unbroken run.
+// I53 and I55 in names of tests are rows of the table in tests/README.md.
 #include <csignal>
 
 #include <sys/syscall.h>

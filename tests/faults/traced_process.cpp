@@ -20,7 +20,8 @@ namespace {
 
 #if defined(__x86_64__)
 
-constexpr int kStopAtCall = SIGTRAP | 0x80;  // with PTRACE_O_TRACESYSGOOD
+/// The signal of a stop at a system call, with the option PTRACE_O_TRACESYSGOOD.
+constexpr int kStopAtCall = SIGTRAP | 0x80;
 
 /// How a kind of call names its file.
 enum class File { none, descriptor, path, path_at };

@@ -1,6 +1,6 @@
 // libFuzzer target: any text is a scene, or is refused with a SceneError that lists an error, or describes
-// joints that cannot close. Scenes of more than a kilobyte are not built, because mass points of large scenes
-// take seconds; their text is parsed and validated.
+// joints that cannot close. Scenes of more than a kilobyte, or with exponents ("eps"), are not built, because
+// their mass points may take seconds; their text is parsed and validated.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -74,7 +74,8 @@ def faults_of_files(folder):
 
 
 def balance_share(folder):
-    """Returns the largest error of the energy balance divided by the energy that could move, from trajectory.csv."""
+    """Returns the largest error of the energy balance, from trajectory.csv, divided by the energy that could
+    move (include/pliant/simulate/README.md)."""
     with open(folder / "trajectory.csv", newline="") as file:
         rows = [{key.split(" ")[0]: float(value) for key, value in row.items() if value}
                 for row in csv.DictReader(file)]

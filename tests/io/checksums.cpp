@@ -1,4 +1,5 @@
 // Checksums of tables, and checkpoints.
+// I55 in the name of a test is a row of the table in tests/README.md.
 #include <pliant/io/checksums.h>
 
 #include "catch.h"
@@ -86,7 +87,7 @@ TEST_CASE("I55: checksums name the first damaged row of a table, or of the check
   CHECK_THROWS_AS(ChecksumReader(folder.path, "sums.npy", {{"a.npy", true}}), RecordingMismatch);
 }
 
-TEST_CASE("of two checkpoints the newest that is undamaged and fits is found") {
+TEST_CASE("the newest undamaged checkpoint with the given state count that is not after the end is found") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   Simulation simulation(scene->body, "rk4");

@@ -1,4 +1,5 @@
 // The steps of a run, the numbers of the steps after which states are recorded, and the selection of frames.
+// I33, N24, N28 and N30 in names of tests are rows of the tables in tests/README.md.
 #include <pliant/io/frame_schedule.h>
 
 #include <cmath>

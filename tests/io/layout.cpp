@@ -1,4 +1,5 @@
 // layout.json names every column of every table, and stays short for many parts.
+// I55 in the name of a test is a row of the table in tests/README.md.
 #include <pliant/io/layout.h>
 
 #include <algorithm>
@@ -103,7 +104,7 @@ TEST_CASE("the layout has the columns of a kind of part once, and a line for eac
   CHECK(Recording(folder / "r", model).rows() == 2);
 }
 
-TEST_CASE("columns of nodes are series in the layout") {
+TEST_CASE("the layout gives the columns of nodes as series (entries with a count)") {
   const NewFolder folder;
   auto scene = std::make_unique<Scene>();
   Part& soft = scene->body.add(make_part("soft", "sphere", {}, 1000));

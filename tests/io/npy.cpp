@@ -1,4 +1,5 @@
 // NumPy tables are read back unchanged, resumed after a truncation, and refused if they are damaged.
+// I50, I51, I53 and I55 in names of tests are rows of the table in tests/README.md.
 #include <pliant/io/format/npy.h>
 
 #include <cmath>

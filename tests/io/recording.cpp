@@ -1,5 +1,6 @@
 // Recordings: states are read back to the last bit, damage is detected, and states between steps are
 // accurate.
+// I53, I55 and I59 in names of tests are rows of the table in tests/README.md.
 #include <pliant/io/layout.h>
 #include <pliant/io/recording.h>
 

@@ -1,5 +1,6 @@
 // Runs and the files in their folders. A run that is interrupted and resumed writes files identical to those
 // of an uninterrupted run. No folder contains files of two runs. run.json reports how a run ended.
+// I49 to I59 and N30 to N67 in names of tests are rows of the tables in tests/README.md.
 #include <pliant/io/run/run.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // The folder of a run in which an earlier process was killed: unfinished files are removed, and a beginning
 // that was not completed is completed or started again.
+// I53 in the name of a test is a row of the table in tests/README.md.
 #include <pliant/io/run/run_folder.h>
 
 #include <fcntl.h>

@@ -1,5 +1,6 @@
 // Nearly incompressible solids: plain elements lock (are too stiff); elements with averaged dilatation do
 // not.
+// N22 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -168,10 +168,11 @@ TEMPLATE_TEST_CASE("a uniform strain gives equal stress in all elements", "[soli
 TEST_CASE(
     "elements of 15 nodes balance a uniform stress to rounding, unless taper and bend deform the rest shape",
     "[solid]") {
-  // The force on a node is an integral of degree 3 over elements with quadratic geometry, for which the rule
-  // of degree 5 is exact. A boundary bubble adds nothing, by the symmetry of the rule. In the undeformed
-  // shape Solid places face and middle nodes without bubbles; taper and bend create bubbles, so that the
-  // integrand has degree 7.
+  // An element has a bubble at a face or middle node that is not at the quadratic interpolation of its other
+  // nodes. Without bubbles the force on a node is an integral of degree 3, for which the rule of degree 5 is
+  // exact. A bubble on the boundary adds nothing, by the symmetry of the rule. In the undeformed shape Solid
+  // places inner face and middle nodes without bubbles; taper and bend create bubbles, so that the integrand
+  // has degree 7.
   auto residual = [](const SolidMesh& mesh) {
     using Linear = Kind<EnrichedTetrahedron, LinearLaw>;
     const VecX<double> f = force(Linear::make(mesh), affine(mesh.rest, uniform_strain(), {0, 0, 0}));

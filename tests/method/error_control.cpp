@@ -1,6 +1,7 @@
 // Steps with error control: the error follows the tolerance, steps end exactly at requested times, a resumed
 // run gives identical bits, impacts are located, and failures are reported. The automatic choice of the
 // method is also tested.
+// N25 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <ctime>

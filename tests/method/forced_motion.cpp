@@ -1,5 +1,6 @@
 // The energy ledger of forced motion: each source of work alone, and most of them together. The balance error
 // falls at the order of the method.
+// N32 and N33 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <functional>

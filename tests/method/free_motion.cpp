@@ -1,6 +1,7 @@
 // Free motion with known solutions: the torque-free top, dust (a solid without elasticity), steady spin,
 // breathing, and pseudo-rigid bodies. A tumbling solid with all parameters dynamic has no known solution:
 // conservation and order are checked.
+// N17, N26 and N28 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include "motion.h"

@@ -1,5 +1,6 @@
 // The linearly implicit method: its order, its stability in steps far above the explicit limit (the largest
 // stable step of RK4), and the number of its factorisations.
+// N20 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <new>

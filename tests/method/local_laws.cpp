@@ -1,5 +1,6 @@
 // Every law of local deformation: energy balance and momenta in free flight, damping, and the largest stable
 // step.
+// N20 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>

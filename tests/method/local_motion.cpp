@@ -1,4 +1,5 @@
 // Motion of parts with local deformation: response to forces, reference conditions, free flight, dust.
+// N09, N20 and N66 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <string>

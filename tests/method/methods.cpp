@@ -1,5 +1,6 @@
 // All methods of integration: their orders on smooth problems with and without joints, at several times of a
 // run; the invariants of the implicit midpoint rule; the step lengths of the stiff method, ESDIRK.
+// N17, N18 and N21 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -218,7 +218,8 @@ TEST_CASE("modes of a mesh are those of its elements under the reference conditi
                  part = make_soft_ball(Basis::modes, resolution, 15);
       const NodalDeformation& nodal_local = *nodal->local()->nodal();
       const ModalBasis& basis = modal(*part).basis();
-      // K Phi = omega^2 M Phi, apart from forces along W.
+      // K Phi = omega^2 M Phi, apart from forces along W of the reference conditions W^T d = 0
+      // (include/pliant/part/local/README.md).
       const Eigen::Index n = nodal_local.n_nodes();
       for (Eigen::Index j = 0; j < 15; ++j) {
         const VecX<double> mode =

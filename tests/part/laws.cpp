@@ -1,6 +1,7 @@
 // Kinematics of parts, s of Eq. (3) and J of Eq. (9): every shape with several chains of deformations,
 // against an independent evaluation in long double. Surface functions, names of parameters, messages and
 // folds are tested, too.
+// N10, N11 and N13 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

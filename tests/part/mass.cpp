@@ -1,4 +1,5 @@
 // Mass, moments and inertial forces of parts: closed forms, and the power identity of M and g_q.
+// N16 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // Mass points of parts with dynamic exponents: their number and their error. The time to place the mass
 // points of a part whose rings are not circles.
+// N16 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // Surface meshes of parts: closed, without duplicate vertices or needle triangles, with the correct volume
 // and normals.
+// N01 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

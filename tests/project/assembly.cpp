@@ -1,5 +1,6 @@
 // Assembly of joints before time 0: consistent initial states from distant, rotated and deformed parts. The
 // last case closes a joint during the run.
+// N36 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>
@@ -241,6 +242,8 @@ TEST_CASE("a joint that cannot close is named with its gap", "[joints]") {
 
 TEST_CASE("a part that spins freely keeps its spin while a joint of its island closes",
           "[assembly][joints]") {
+  // An island is a set of parts that joints connect. The joint of part a is released at 0.005 s; the other
+  // joint of the island closes from 0.1 s on.
   for (const char* method : {"semi_implicit_euler", "rk4"}) {
     CAPTURE(method);
     MultiBody body;

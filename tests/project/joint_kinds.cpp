@@ -1,5 +1,6 @@
 // Motions that each kind of joint leaves free, on rigid and on deforming parts; joints at special points and
 // within one part; joints that switch on and off.
+// N45 and N48 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Motion with joints: decay laws of Baumgarte's equation, momenta, pendulums and chains with known solutions,
 // strings, parameter limits under joints, orders of convergence, joints that contradict each other.
+// N34 to N60 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>
@@ -705,8 +706,8 @@ TEST_CASE("N46: lambda C_q v is the power of the joints on a part that stretches
 }
 
 TEST_CASE(
-    "N36: joints that close during the run from far apart stay within 1.5 times the speed cap, and are "
-    "closed at the end",
+    "N36: while a joint closes from far apart, its parts move at up to 1.5 times the largest closing speed, "
+    "and the joint is closed at the end",
     "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double apart : {3, 10, 100}) {
@@ -865,6 +866,7 @@ TEST_CASE("a parameter that closing joints stretch stops at its limit", "[joints
   }
 }
 
+// An island is a set of parts that joints connect.
 TEST_CASE("islands are independent: alone and beside others they give identical bits", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     VecX<double> q;

@@ -1,5 +1,6 @@
 // Limits of parameters as one-sided constraints. A parameter never passes a limit; it can rest at the limit
 // and leave the limit again. The ledger records the work of limits.
+// N04 and N06 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include "motion.h"

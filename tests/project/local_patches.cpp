@@ -1,4 +1,5 @@
-// Forces and joints on a patch of nodes: independence of the mesh, the correct torque, and closed joints.
+// Forces and joints on a patch of nodes: independence of the mesh, the correct torque, and closed joints. A
+// patch is the set of nodes within a radius of a material point (Point::patch).
 #include "catch.h"
 
 #include <Eigen/Geometry>
@@ -40,7 +41,7 @@ double stretch(int resolution, double patch) {
   const Eigen::Index n = local.n_nodes();
   std::vector<Eigen::Triplet<double>> entries;
   local.energies()[0]->add_stiffness(VecX<double>::Zero(3 * n), entries);
-  // A small multiple of the mass matrix fixes the rigid motions; the pull does no work on them.
+  // A small multiple of the mass matrix makes K regular for rigid motions, in which the pull does no work.
   for (Eigen::Index k = 0; k < 3 * n; ++k) entries.emplace_back(k, k, 1e-6 * local.inertia()[k]);
   Eigen::SparseMatrix<double> K(3 * n, 3 * n);
   K.setFromTriplets(entries.begin(), entries.end());

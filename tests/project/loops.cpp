@@ -1,5 +1,6 @@
 // Closed loops and long chains of joints: energy, gaps and ranks of mechanisms with redundant rows, passages
 // through singular positions, extreme mass ratios.
+// N39, N40, N43 and N44 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

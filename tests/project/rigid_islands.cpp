@@ -1,5 +1,5 @@
-// Rigid parts on ball joints: their specialised evaluation and projection of joints agree with the general
-// evaluation and projection.
+// Rigid parts on ball joints (rigid islands): their specialised evaluation and projection of joints agree
+// with the general evaluation and projection.
 #include "catch.h"
 
 #include <pliant/body/constraint/rigid_island.h>

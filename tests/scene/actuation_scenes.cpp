@@ -204,7 +204,8 @@ TEST_CASE("a twist passes half a turn within its limits, and is the rotation tha
   }
   test::run(*run.simulation, 1, 200);
   CHECK(run.sensor(0) == Approx(3.8 - 2 * kPi).margin(1e-6));
-  // At time 0 the ball is turned by `rotation` backwards: by 60 degrees about x, then by 90 degrees about y.
+  // The key "rotation" of the joint is the inverse of `turn`. At time 0 the ball is therefore turned by
+  // `turn`: by 60 degrees about x, then by 90 degrees about y.
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitY()) *
                                 Eigen::AngleAxisd(kPi / 3, Eigen::Vector3d::UnitX()));
   const Eigen::AngleAxisd back(turn.conjugate());

@@ -1,5 +1,6 @@
 // The program and the JSON Schema accept all scenes in scenes/. The schema refuses every bad scene whose
 // error concerns only types, keys or ranges. Some scenes move as expected.
+// I59 and N36 in names of tests are rows of the tables in tests/README.md.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -109,8 +110,9 @@ double width(const Simulation& simulation, double u) {
 
 }  // namespace
 
-TEST_CASE("the twisting tube passes its largest twist, the soft chain stretches, and both ledgers balance",
-          "[long]") {
+TEST_CASE(
+    "the twisting tube untwists and twists the other way, the soft chain stretches, and both ledgers balance",
+    "[long]") {
   double smallest = 0;
   run("twisting_tube.json", 0.8, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
     smallest = std::min(smallest, simulation.state().q[7]);
@@ -150,7 +152,8 @@ TEST_CASE("the ringing sphere: its dents spring out and back, it rotates, moment
   CHECK(rotation_angle == Approx(0.45 * std::sqrt(1.2)).epsilon(0.1));
 }
 
-TEST_CASE("the balloon falls onto its string, stretches at its knot, and bulges below", "[long]") {
+TEST_CASE("the balloon falls until its slack string is tight, stretches at its knot, and bulges below",
+          "[long]") {
   bool slack = false;
   double largest_stretch = 0, above = 0, below = 0;
   run("balloon.json", 0.6, 1e-4, [&](const Simulation& simulation, const pliant::Ledger&) {

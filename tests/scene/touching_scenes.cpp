@@ -166,7 +166,9 @@ TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[conta
 }
 
 TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
-  constexpr double kImpact = 0.05, kLast = 12.8;  // longest impact, start of the last second; both in s
+  // A deformation less than kImpact (s) after the last time without contact is a dent of an impact. kLast:
+  // start of the last second, s.
+  constexpr double kImpact = 0.05, kLast = 12.8;
   double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0, contact_gain = 0, error = 0;
   VecX<double> undeformed;  // deformation() of the middle balloon at the last time without contact
   const int contact_starts = run_scene("balloons", [&](Simulation& simulation) {

@@ -1,6 +1,7 @@
 // Laws of every shape in AllShapes (shape/all_shapes.h): e and its derivatives, and the inverse of e. e maps
 // a material point (u, v, w) to its position. The label of a position x is the material point with e(label) =
 // x; the gauge of x is the radial coordinate w of this material point.
+// N01, N02, N05 and N15 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

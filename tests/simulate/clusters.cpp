@@ -1,5 +1,5 @@
 // Clusters of bodies step separately. A cluster has the same bits alone and beside other clusters. Bodies
-// that meet join one cluster.
+// that meet join one cluster. include/pliant/simulate/README.md explains clusters and their intervals.
 #include "catch.h"
 
 #include <algorithm>

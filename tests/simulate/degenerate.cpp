@@ -34,7 +34,7 @@ const Case kCases[] = {
        ball(body, "b", 0.1).fix();
      }},
     {"one free part", [](MultiBody& body) { ball(body, "a", 0); }},
-    {"a slack string alone in its island",
+    {"a slack string that is the only joint of its parts",
      [](MultiBody& body) {
        Part &a = ball(body, "a", 0), &b = ball(body, "b", 0.5);
        body.join("slack", String{10}, {point(a, 0, 0, 0), point(b, 0, 0, 0)});
@@ -69,7 +69,8 @@ void check_run(const Case& model, const std::string& method, double tolerance, b
 
 }  // namespace
 
-TEST_CASE("models without degrees of freedom, pairs or rows run with every method", "[failure]") {
+TEST_CASE("models without degrees of freedom, contact pairs or joint rows run with every method",
+          "[failure]") {
   const std::vector<std::string> controlled = controlled_integrators();
   for (const Case& model : kCases)
     for (const bool contact : {false, true}) {

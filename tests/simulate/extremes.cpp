@@ -1,4 +1,5 @@
 // Extreme models and runs: slender bodies, long runs, decreasing steps, floating-point exceptions.
+// N07, N29, N31 and N70 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <cfenv>

@@ -1,5 +1,6 @@
 // Runs that must stop, and parameters that cannot move: the messages name the cause, and no state contains a
 // number that is not finite.
+// N24 and N72 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <limits>

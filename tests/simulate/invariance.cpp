@@ -1,5 +1,6 @@
 // Changes that must not affect a motion: other units, rotations and reflections of the scene, the order of
 // parts, unrelated parts, the number of threads, queries, a resumed run, features with zero effect.
+// N30 and N62 to N67 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // Resting contact: stacks that stand for up to an hour of simulated time, dropped stacks that come to rest,
 // sharp shapes on their lowest points, extreme mass ratios.
+// N51, N52 and N56 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

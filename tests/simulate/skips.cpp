@@ -229,6 +229,7 @@ TEST_CASE("without local deformation there are no nodes; with it, J of frozen pa
   }
 }
 
+// The reference conditions W^T d = 0 (include/pliant/part/local/README.md) separate d from other motions.
 TEST_CASE("reference conditions that are satisfied need no further evaluation after a step",
           "[skip][local][long]") {
   for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit"})

@@ -1,4 +1,5 @@
 // The predicted largest stable step is compared with the measured largest stable step.
+// N19 and N20 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <chrono>

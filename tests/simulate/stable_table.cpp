@@ -1,5 +1,7 @@
 // The predicted largest stable step for scenes of every kind: a small disturbance of the start stays bounded
-// at the predicted step, and grows at 1.11 times this step.
+// at 0.995 times the predicted step. It grows at 1.11 times the predicted step if StableStep::uncounted is
+// empty.
+// N20 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <cmath>
@@ -61,7 +63,8 @@ Scene shell(const std::string& shape, const std::vector<Law>& laws, double alpha
           }};
 }
 
-/// Returns a scene with dynamic semi-axes. alpha: 1/s; beta: s; drag: 1/s.
+/// Returns a scene with one solid that has one dynamic size (a semi-axis or a radius). alpha: 1/s; beta: s;
+/// drag: 1/s.
 Scene breathing(const std::string& shape, const std::string& parameter, double alpha, double beta,
                 double drag) {
   return {

@@ -1,5 +1,6 @@
 // Impulses of many simultaneous contacts between simple masses: Coulomb's law at each contact, checked with
-// the resulting velocities; momentum; warm starts.
+// the resulting velocities; momentum; warm starts. A mover is a part, or a set of parts that joints connect
+// (coulomb_system.h).
 #include "catch.h"
 
 #include <algorithm>

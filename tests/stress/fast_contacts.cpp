@@ -1,5 +1,6 @@
 // Rigid and soft parts move up to a hundred lengths in a step towards planes, plates and each other. No part
 // may pass through another; a run that cannot ensure this stops and recommends a smaller step.
+// N53 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Balls are packed densely between a floor and four walls, with about five thousand simultaneous contacts.
 // The tests check the accuracy of the impulses, the memory, and the growth of the time with the number of
 // contacts. Other tests use piles and a poured heap.
+// N55 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Planes that appear inside parts, impacts on a board supported by a floor and a hinge, strings that become
 // taut. The ledger records the work of impulses, and changes of momentum equal the reported impulses.
+// N58, N59 and N60 in names of tests are rows of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Parts that start inside other parts or inside a floor are separated at a bounded speed. The ledger records
 // the energy that the separation adds.
+// N54 in the name of a test is a row of the table in tests/README.md.
 #include "catch.h"
 
 #include <algorithm>

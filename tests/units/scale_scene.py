@@ -1,6 +1,6 @@
-"""Expresses a scene in other units: multiplies each number that has a dimension by the power of its units.
+"""Expresses a scene in other units: multiplies each number that has a dimension by the size of its unit.
 
-The units are powers of two, so that no number is rounded. A key that OBJECTS does not list is an error; a new key of a
+The sizes are powers of two, so that no number is rounded. A key that OBJECTS does not list is an error; a new key of a
 scene therefore needs an entry here.
 """
 

@@ -190,7 +190,8 @@ class RungeKutta {
     }
   }
 
-  /// Integrates from 0 to `end` (s) with the step control of Hairer's DOP853. The last stage of a step is the
+  /// Integrates from 0 to `end` (s) with the error norm of Hairer's DOP853 and a similar
+  /// control of the step. The last stage of a step is the
   /// first stage of the next one.
   void adaptive(VectorXd& y, double end, double tolerance) {
     const auto last = tableau_.b.size();

@@ -109,9 +109,10 @@ struct ContactSettings {
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
   std::optional<Sleep> sleep{};  ///< not given: no part sleeps
-  /// Longest step, s, in a run to a tolerance of 5e-4 or less, while resting contacts prevent the control of
-  /// the error: with many parts, with parts that deform locally, or with point forces. Must be > 0. Larger
-  /// tolerances allow longer steps (contact/longest_contact_step.h).
+  /// Longest step, s, in a run to a tolerance of 5e-4 or less, while bodies rest in contact and the error of
+  /// contact is not controlled. This error is not controlled with many parts, with parts that deform locally
+  /// and with point forces. Must be > 0. Larger tolerances allow longer steps
+  /// (contact/longest_contact_step.h).
   double longest_step = 2e-3;
   /// Length of an interval, s. In a run to a tolerance, bodies that may meet within an interval step together
   /// in a cluster, independently of other bodies (simulate/clusters.h). Intervals end at the multiples of

@@ -306,7 +306,7 @@ class Model {
 
   /// Returns the number of a part of the body in this model; -1 if this model does not contain the part.
   int number_of(const Part& part) const;
-  /// Whether this model contains a part of the body that has coordinates.
+  /// Whether `part` is a part of this model that has coordinates.
   bool moves(const Part* part) const { return part != nullptr && !part->fixed() && number_of(*part) >= 0; }
   /// The masses of the rigid parts that have been added; the keys are the constants of the parts.
   using RigidMasses = std::unordered_map<const PartConstants*, std::shared_ptr<const RigidMass>>;

@@ -104,7 +104,8 @@ class MultiBody {
   /// their constants (part/constants_cache.h). Throws the exceptions of Part::prepare(). Only one thread at a
   /// time may call this function.
   void prepare(Part& part) const { part.prepare(constants_); }
-  /// Number of parts whose constants prepare() has computed; all other parts share constants.
+  /// Number of constants that prepare() has computed for sharing. Parts that share constants count
+  /// once; parts that deform locally or have a mass distribution do not count.
   std::size_t n_computed() const { return constants_.computed(); }
 
   /// Adds a spring between two points: stiffness (N/m), damping (N s/m) and rest length (m). Throws
@@ -217,7 +218,7 @@ class MultiBody {
   void add_limits(const Joint& joint, std::vector<std::unique_ptr<Joint>> limits);
 
   std::vector<std::unique_ptr<Part>> parts_;
-  mutable ConstantsCache constants_;                // Model prepares the parts of a constant body
+  mutable ConstantsCache constants_;                // Model prepares the parts of a const MultiBody
   std::unordered_map<std::string, int> number_of_;  // keys: names of parts
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;

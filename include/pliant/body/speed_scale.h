@@ -36,8 +36,9 @@ double largest_speed(const PartModel& m, const V& v) {
   return largest;
 }
 
-/// Estimates the largest speed of a point of a part relative to its frame by the rates of its parameters,
-/// m/s. v: the first 6 + n_s velocities of the part. reach: largest distance of a point from the origin, m.
+/// Estimates the largest speed that the rates of the parameters give a point of a part, relative to the frame
+/// of the part, m/s. v: the first 6 + n_s velocities of the part. reach: largest distance of a point from the
+/// origin, m.
 template <class V>
 double shape_speed(const PartModel& m, const V& v, double reach) {
   double speed = 0;
@@ -45,8 +46,8 @@ double shape_speed(const PartModel& m, const V& v, double reach) {
   return m.n_s == 0 ? 0 : reach / m.size * speed;
 }
 
-/// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, by default 1/s. This
-/// rate is the unit in formulas that need a scale of time and have no other.
+/// Returns the rate (1/s) up to which a motion is slow: a tenth of Stabilization::rate, by default 1 per
+/// second. This rate is the unit in formulas that need a scale of time and have no other.
 inline double slow_rate(const Model& model) {
   return 0.1 * model.body().stabilization.rate;
 }

@@ -1,4 +1,4 @@
-// Counters of the work that the steps of a simulation did.
+// Counters of the steps of a simulation: computations, events, and the largest errors of contact.
 #pragma once
 
 #include <algorithm>
@@ -28,12 +28,15 @@ struct StepCounters {
   long limit_impulses = 0;  ///< impulses at limits of parameters and on strings
   long factorisations = 0;  ///< factorisations of the matrices of implicit methods
   long impacts = 0;         ///< impacts whose time within the step was located
-  long contact_sweeps = 0;  ///< sweeps over all contacts of a cluster, summed over the clusters
+  /// Sweeps over all contacts of a cluster, summed over the clusters. A cluster is a set of bodies that
+  /// contacts connect.
+  long contact_sweeps = 0;
   /// Clusters whose search for contact impulses was repeated with compliant contacts, see
   /// CoulombResult::fallbacks (solve/coulomb_system.h).
   long contact_fallbacks = 0;
-  long contact_cutoffs =
-      0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts
+  /// How often a step reached the largest number of rounds of contact resolution or separation, of located
+  /// impacts, or of impacts in a sequence.
+  long contact_cutoffs = 0;
   /// Impacts in sequences (ImpactOrder::sequential); pairs that approach equally fast are one impact.
   long sequential_impacts = 0;
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s

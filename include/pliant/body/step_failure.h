@@ -20,8 +20,8 @@ class NumericalFailure : public StepFailure {
   using StepFailure::StepFailure;
 };
 
-/// Joints contradict each other, cannot close before time 0, or have a prescribed path that jumps. The
-/// message names the joints.
+/// Joints contradict each other, cannot be closed by the assembly before time 0, or have a prescribed path
+/// that jumps. The message names the joints.
 class UnsatisfiableModel : public StepFailure {
   using StepFailure::StepFailure;
 };

@@ -93,7 +93,7 @@ inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
 template <class S>
 struct CoordinateWorkspace {
   bool known = false;  ///< whether `rows` belong to this evaluation
-  JointRows<S> rows;   ///< without bias
+  JointRows<S> rows;   ///< C, C_dot and C_x; the bias is not valid
 };
 
 /// The quantities of all parts and joints.

@@ -25,8 +25,7 @@ namespace pliant {
 
 namespace contact_resolution {
 
-/// Largest number of successive resolutions after a motion whose impulses push bodies into others
-/// (resolve_chain).
+/// Largest number of resolutions in one call of resolve_chain().
 inline constexpr int kMaxChainLinks = 4;
 /// Two contacts of a pair, of different resolutions or steps, are the same if their contact points are nearer
 /// than this share of the size of the smaller body.
@@ -357,7 +356,7 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   if (h > 0) add_ejections(state);
   // Adds the work of forces during the displacement by the impulses. Methods with a reach of 1 need this at
   // nodes only, because they compute the work of forces from the velocities at the start of the motion. For a
-  // resting part this work is zero, which is right for impulses that cause displacements for h seconds.
+  // resting part they compute zero, which is right for impulses that cause displacements for h seconds.
   if (motion.force_time < h || by_displacement)
     state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (damped) damping->correct(state);

@@ -37,7 +37,7 @@ inline constexpr double kOverlapPerTolerance = 1e-3, kMaxAllowedOverlap = 0.5;
 inline constexpr double kRoundingUlps = 16;
 /// Contacts at nodes of meshes may overlap by this multiple of RestingContacts::tight_gap.
 inline constexpr double kMeshOverlap = 800;
-/// Tolerance of a separation, as a share of the overlap that may remain.
+/// Tolerance of the displacements of a separation, as a share of the smallest allowed_overlap().
 inline constexpr double kSeparationTolerance = 0.03;
 
 }  // namespace contact_separation

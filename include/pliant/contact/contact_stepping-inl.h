@@ -41,15 +41,15 @@ inline constexpr double kMaxMotions = 1e4;
 /// this. For other tolerances step doubling alone controls the error, because this takes only a third of the
 /// time for heaps.
 inline constexpr double kFrictionTolerance = 1e-4;
-/// Largest number of impacts that are located in a step.
+/// Largest number of impacts that are located in a step. Later impacts act at the ends of their motions.
 inline constexpr int kMaxLocatedImpacts = 200;
 /// At the time of a located impact, other pairs may touch, too. If such a pair did not rest before, it
 /// touches if its gap is at most this share of the largest gap of a resting contact.
 inline constexpr double kTouchingGap = 1e-6;
 
 /// With a tolerance, residual_speed() is zero up to this speed, in the unit of kMinImpactSpeed; without a
-/// tolerance, up to kMinImpactSpeed. The bound is lower with a tolerance, because long steps leave small gaps
-/// at resting contacts.
+/// tolerance, up to kMinImpactSpeed. The bound is lower with a tolerance, because in a long step even a slow
+/// residual leaves a gap at a resting contact, and RestingContacts::widen_gap() must allow this gap.
 inline constexpr double kMinResidualSpeed = 1e-5;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,

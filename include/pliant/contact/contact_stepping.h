@@ -122,7 +122,7 @@ class ContactStepping {
     bool even = true;               ///< whether all parts but the last had their full length
     bool equal_contacts = true;     ///< whether all but the last part have as many contacts as the whole step
     std::size_t last_contacts = 0;  ///< number of the first contact of the last part in the record
-    /// Velocities that gravity gives, in the whole step, the parts of pairs that have lost all contacts; n_v.
+    /// Velocities that gravity adds in the whole step to the parts of pairs that have lost all contacts; n_v.
     VecX<double> gravity_velocities;
     bool finite = false;  ///< whether the state at the end is finite
   };

@@ -21,8 +21,9 @@ class ImpactSequence {
   /// the first impact of the contact, m/s: (1 + restitution) times the normal velocity that accelerations
   /// have given its sides since they met. Pairs that approach equally fast, except for the residual of the
   /// impulses, are resolved together, so that symmetric motions stay symmetric. h: see ResolvedMotion.
-  /// min_speed: approaches and rebounds slower than this (m/s) are ignored. Approaches within
-  /// ContactSettings::tolerance are ignored, too. A sequence has at most 1000 impacts plus ten for each pair.
+  /// min_speed: approaches and rebounds slower than this (m/s) are ignored. Approaches up to twice
+  /// ContactSettings::tolerance, as a share of the fastest approach of connected bodies at the start, are
+  /// ignored, too. A sequence has at most 1000 impacts plus ten for each pair.
   /// If pairs still approach afterwards, StepCounters::contact_cutoffs grows by one. Without restitution
   /// there is no sequence: it would converge slowly to impulses that Newton's law at all contacts at once
   /// gives directly.

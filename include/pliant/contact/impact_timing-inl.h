@@ -17,8 +17,8 @@ namespace pliant {
 
 namespace impact_timing {
 
-/// The time of an impact is exact if the gap or overlap is at most kGapTolerance sizes of the smallest part,
-/// or if the time is known to kTimeTolerance of the motion.
+/// refine_impact() ends if the gap or overlap is at most kGapTolerance sizes of the smallest part, or if the
+/// time is known to kTimeTolerance of the motion.
 inline constexpr double kGapTolerance = 1e-13, kTimeTolerance = 1e-15;
 /// Largest number of trial times of each search.
 inline constexpr int kMaxTrials = 60;

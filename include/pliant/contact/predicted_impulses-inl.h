@@ -106,7 +106,7 @@ class PredictedBodies {
   std::vector<bool> excluded_;  // of each set
 };
 
-/// Excludes the bodies of parts at contacts that sleep or are bounded (is_bounded()).
+/// Excludes the body of each part at a contact if the part sleeps or is bounded (is_bounded()).
 inline void exclude_bounded(const Model& model, const State& state, const std::vector<Contact>& resting,
                             PredictedBodies& bodies) {
   std::vector<bool> examined(model.islands().size(), false);

@@ -17,9 +17,9 @@ struct Prediction {
   const ContactResolution& resolution;
 };
 
-/// Predicts the impulses of resting contacts in motion.force_time() seconds at the start of a motion, sets
-/// Contact::predicted and Contact::lift of these contacts, and applies the impulses to the state. Sets
-/// motion.unpredicted. Moves these contacts to the end of `resting`. README.md of this folder lists the
+/// Predicts impulses of resting contacts at the start of a motion: their forces in the last step times
+/// motion.force_time(). Sets Contact::predicted and Contact::lift, applies the impulses to the state, and
+/// sets motion.unpredicted. Moves these contacts to the end of `resting`. README.md of this folder lists the
 /// conditions for a prediction.
 void apply_predicted_impulses(const Prediction& prediction, FreeMotion& motion,
                               std::vector<Contact>& resting);

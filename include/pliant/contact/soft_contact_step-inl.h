@@ -16,13 +16,15 @@ namespace pliant {
 
 namespace soft_contact {
 
-/// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation.
+/// Contacts at nodes may overlap by this multiple of RestingContacts::tight_gap after extrapolation. Nodes
+/// that would be deeper keep the positions of the halves.
 inline constexpr double kMaxOverlap = 400;
 /// If a contact at nodes is deeper than this multiple of RestingContacts::tight_gap at the start of a step,
 /// the step separates bodies, and is not repeated. The multiple is larger than that which a separation leaves
 /// (contact_separation::kMeshOverlap).
 inline constexpr double kMaxOverlapAtStart = 1000;
-/// Largest number of rounds of the search for nodes that keep the positions of the halves.
+/// Largest number of rounds of the search for nodes that keep the positions of the halves. If more rounds are
+/// needed, the result of the halves is used.
 inline constexpr int kMaxRounds = 3;
 
 /// Returns the share s of the extrapolation, from 0 to 1, with which a step adds no energy. The balance of a

@@ -33,8 +33,8 @@ inline constexpr double kAtRestTolerance = 1e-2;
 /// only one of both results includes the impact, the velocities differ by a jump, however short the step is.
 /// A difference is a jump if the results do not agree (agree()) and the difference exceeds this multiple of
 /// the speed that gravity gives a body in the step. Then the error is measured by the displacement that the
-/// jump causes in the step, if slow_rate() times the length of the step is at most longest_contact_step()
-/// with the default settings.
+/// jump causes in the step, if slow_rate() times the length of the step is at most the number of seconds of
+/// longest_contact_step() with the default settings.
 inline constexpr double kJumpInGravity = 0.6;
 /// A gap above this multiple of the largest gap of a resting contact is no error of a step: the contact has
 /// opened.

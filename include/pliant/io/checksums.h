@@ -35,7 +35,7 @@ struct CheckedTable {
 /// The result of a comparison of tables with their checksums.
 struct Inspection {
   std::int64_t undamaged = 0;       ///< number of states before the first damaged or missing row
-  std::vector<std::string> damage;  ///< one text per damaged file, with its first damaged row or rows
+  std::vector<std::string> damage;  ///< one text per damaged file, with the rows of its first damaged state
 };
 
 /// Returns the columns of a table of checksums, in order.

@@ -1,9 +1,10 @@
 // The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
 // time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
-// joints) and a check number, work.npy the work up to each state. supports.npy contains the contact cache of
-// scenes with contact, and checksums.npy the checksums of these tables. A recorded state is the initial state
-// or a state after a step, never an interpolated state. A run resumed from a recorded state reproduces all
-// later states bit by bit. layout.json (layout.h) names every column.
+// joints) and a check number, work.npy the counters of the run (steps, evaluations, ...) up to each state.
+// supports.npy contains the contact cache of scenes with contact, and checksums.npy the checksums of these
+// tables. A recorded state is the initial state or a state after a step, never an interpolated state. A run
+// resumed from a recorded state reproduces all later states bit by bit. layout.json (layout.h) names every
+// column.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +41,7 @@ class RecordingWriter {
   /// std::system_error, RecordingMismatch.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
-  /// Appends a state and the work up to it, which stay in memory until flush().
+  /// Appends a state and the counters of the run up to this state. Both stay in memory until flush().
   void append(const State& state, const RunWork& work);
   /// Writes all appended states to the files, so that the states survive a crash of the process. With
   /// to_disk, the states survive a power cut too.
@@ -81,7 +82,7 @@ class Recording {
   /// Returns a recorded state, exact to the last bit. Throws RecordingMismatch if its check number does not
   /// match.
   State state(std::int64_t row) const;
-  /// Returns the work up to a recorded state.
+  /// Returns the counters of the run up to a recorded state.
   RunWork work(std::int64_t row) const;
   /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time, returns
   /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.

@@ -50,8 +50,8 @@ class TimeFunction {
   /// Returns the value and the first and second time derivative at t (s).
   Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(first_value_); }
   double value(double t) const { return at(t).v; }
-  /// Returns the value at time 0, computed when the function was made. Another thread may add keys to the
-  /// function (LinearKeys) at the same time.
+  /// Returns the value at time 0, computed when the function was made. The call is safe while another thread
+  /// adds keys to the function (LinearKeys).
   double first_value() const { return first_value_; }
   bool is_constant() const { return impl_ == nullptr; }
   /// Returns the first kink in the interval (after, until] (s), or a Kink of infinite time. For a formula,
@@ -71,7 +71,7 @@ class TimeFunction {
       : first_value_(impl->at(0).v), impl_(std::move(impl)) {}
 
  private:
-  double first_value_;  // of a constant: its value
+  double first_value_;  // at time 0; for a constant, its value at all times
   std::shared_ptr<const Impl> impl_;
 };
 

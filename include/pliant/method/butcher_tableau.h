@@ -11,7 +11,7 @@ namespace pliant {
 /// at the additional stages, in this order. k_end are the rates at the end of the step. d_j k = sum_i d_ji
 /// k_i.
 struct ContinuousExtension {
-  int stages;       ///< additional stages, after the rates at the end of the step
+  int stages;       ///< number of additional stages, which follow the rates at the end of the step
   const double* a;  ///< row by row, one row for each additional stage: weights of all k_i before it
   const double* c;  ///< one node for each additional stage
   int terms;        ///< number of the terms d_0, d_1, ...

@@ -24,7 +24,7 @@ class ConstantsCache {
   /// uses any more. The limit is then at least twice the number of the remaining keys.
   void store(ConstantsKey key, std::shared_ptr<const PartConstants> constants);
 
-  /// Number of calls of store(): how often constants were computed.
+  /// Number of calls of store(): how often constants that can be shared were computed.
   std::size_t computed() const { return computed_; }
   /// Number of keys with stored constants.
   std::size_t size() const { return known_.size(); }

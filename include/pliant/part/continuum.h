@@ -53,7 +53,7 @@ struct StrainPoints {
   std::vector<Pack> weight;  ///< m^3 of a solid, m^2 of a shell; 0 in unused lanes
   int n_points = 0;
   int directions = 3;
-  std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
+  std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings (u, w) = const
   /// Relative change of the integrals when the nodes along a direction are doubled once more: 0 for "affine",
   /// else at least kStrainTolerance. The value is exactly kStrainTolerance if the search converged, or if it
   /// accepted a change of at most 100 kStrainTolerance that finer rules did not halve.

@@ -1,5 +1,5 @@
-// Counters of the work that the kernels of parts have done. Tests and the file run.json use these counters to
-// show which work was skipped.
+// Counters of computations of the kernels of parts: points, matrices and forces that were evaluated. Tests
+// and the file run.json show with these counters which evaluations were skipped.
 #pragma once
 
 namespace pliant {

@@ -130,7 +130,7 @@ class PartDescription {
   /// Whether the part is rigid: no parameter is dynamic, and there is no local deformation.
   bool rigid() const { return parameters_.n_dynamic() == 0 && !local_settings_; }
   /// Whether s is linear in q_s, so that J never changes: all dynamic parameters are lengths in which the
-  /// shape is linear, and no link of the chain acts.
+  /// shape is linear, and no link of the chain acts. False if no parameter is dynamic.
   bool linear() const;
   /// Throws std::invalid_argument if the part cannot have the elastic material that elasticity() set.
   /// prepare() calls this function too.

@@ -80,8 +80,8 @@ class ShapeInterface {
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
   /// Returns the material point of the shape at the position that the rest map gives for m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns the panels of the quadrature along u. dynamic_exponents: whether an exponent is a degree of
-  /// freedom.
+  /// Returns the panels (shape/panel.h) of the quadrature along u. dynamic_exponents: whether an exponent is
+  /// a degree of freedom.
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
   /// Returns the panels of the quadrature along v. The argument is that of profile().
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;

@@ -35,10 +35,11 @@ inline constexpr double kEqualMerit = 1e-12;
 /// the start of the run closes without loss of accuracy.
 inline constexpr double kProjectedGap = 1e-9;
 inline constexpr int kMaxIterations = 400;
-/// An island cannot close if kPatience iterations do not reduce its gap below kProgress times the earlier
-/// value. If any parameter has a stiffness, these iterations must not reduce the merit either. kMaxHalvings:
-/// largest number of times that the line search halves a step. kMaxAttempts: largest number of times that one
-/// step is computed again with a larger cost of rigid motion.
+/// An island cannot close if more than kPatience successive iterations do not reduce its gap below kProgress
+/// times the smallest gap before. If any parameter has a stiffness, the assembly fails only if such
+/// iterations do not reduce the merit either. kMaxHalvings: largest number of times that the line search
+/// halves a step. kMaxAttempts: largest number of times that one step is computed again with a larger cost of
+/// rigid motion.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
 /// Largest number of joints that a message names, in addition to the joint with the largest gap.
@@ -107,7 +108,7 @@ class Assembly {
       best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
       if (!closed && since_gap > kPatience && (!stiff_ || since_merit > kPatience)) fail(i);
-      // The remaining changes of gaps and shape are rounding errors.
+      // Stop if the remaining changes of gaps and shape are rounding errors.
       if (now <= kProjectedGap && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kConverged) return i;

@@ -21,7 +21,7 @@ namespace projection {
 /// |t|.
 inline constexpr double kKinkMargin = 2;
 
-/// An impulse below this share of impulse_scale() is a rounding error.
+/// An impulse up to this share of impulse_scale() is a rounding error and is not recorded.
 inline constexpr double kImpulseRounding = 1e-9;
 
 /// Returns a scale of the impulses of a joint, N s: a mass times a speed. The mass is the mass of the

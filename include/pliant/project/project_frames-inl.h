@@ -23,13 +23,15 @@ namespace pliant {
 
 namespace projection {
 
-/// Changes of the frame below this share of the size of the part are rounding errors.
+/// A change of the frame of at most this share of the size of the part is a rounding error; it is not
+/// applied.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
 /// K is regular if |sum m d s^T| over the nodes (mass m, displacement d, reference position s) is at most
 /// this share of the smallest moment of inertia.
 inline constexpr double kSmallChange = 0.3;
-/// Largest LocalWorkspace::condition(), the condition number of the matrix that determines the frame.
+/// Largest allowed LocalWorkspace::condition(), the condition number of the matrix that determines the frame.
+/// Above it, check_condition() throws.
 inline constexpr double kMaxCondition = 1e8;
 
 /// Returns whether the conditions of a part without dynamic parameters are satisfied to rounding, now and
@@ -65,7 +67,7 @@ inline void check_condition(const PartModel& m, const LocalWorkspace& local, dou
   message << "the motion of the nodes of part '" << m.part->name()
           << "' no longer determines its frame and global parameters (condition number ";
   if (std::isfinite(condition))
-    message << condition << ", at most " << kMaxCondition << "); ";
+    message << condition << ", expected at most " << kMaxCondition << "); ";
   else
     message << "not finite); ";
   message << (m.n_s > 0 ? "freeze some of the parameters"

@@ -1,5 +1,6 @@
 // The projection of a group of parts onto its joints, C = 0 of Eq. (12) and C_dot = 0, and onto its limits.
-// The projection after a step and the impulses before a step use it.
+// The impulses before a step (pre_step_impulses-inl.h) use the constants and the small functions of this
+// file.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +20,8 @@
 
 namespace pliant::projection {
 
-/// kResidual: residual of a projection, relative to the length of the joint (JointModel::length). kRounding:
-/// rounding of coordinates, relative to their size.
+/// A gap is a rounding error up to kResidual times the length of the joint (JointModel::length) plus
+/// kRounding times the size of the coordinates, see rounding().
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
 /// If an iteration leaves more than the share kSlow of the error, the next iteration uses a new factorisation
 /// of C_q M^-1 C_q^T. If an iteration with a new factorisation leaves more than the share kStalled, the
@@ -40,10 +41,11 @@ inline constexpr double kMaxGap = 0.1;
 /// A joint cannot close if other joints contradict it, and its gap is above kStuckGap lengths of the joint
 /// after it has acted for a time of kPatience / beta. beta: Baumgarte's factor, 1/s.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
-/// A projection with other independent rows than at the start of the step may undo at most this share of the
-/// motion.
+/// A projection that decides anew which rows are dependent (RankRule::decide or rounding) is rejected if it
+/// moves the parts by more than this share of their motion in the step.
 inline constexpr double kMaxUndoneShare = 0.25;
-/// A string is taut within this distance of its length, in sizes of its smaller part (JointModel::length).
+/// A string is taut if the distance of its ends is at least its length minus this number times
+/// JointModel::length.
 inline constexpr double kTaut = 1e-9;
 
 /// A one-sided joint does not rebound if the magnitude of its rate C_dot is at most this number, in units of

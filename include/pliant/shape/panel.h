@@ -13,7 +13,7 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< 45 degrees from sin = 0 (or cos = 0) on; e varies as |sin|^eps (or |cos|^eps)
+    power,     ///< 45 degrees that start where sin = 0 (or cos = 0); e varies as |sin|^eps (or |cos|^eps)
   };
   Kind kind;
   double from = 0, to = 0;         ///< smooth and periodic panels: angles at the ends, rad

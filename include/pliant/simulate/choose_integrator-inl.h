@@ -34,8 +34,9 @@ inline constexpr double kFactorisation = 0.005;
 inline constexpr double kSparseFactorisation = 13;
 /// Cost of the solves of a step, in factorisations. Measured: 0.13 for the shell above, 0.1 for the solid.
 inline constexpr double kSolves = 0.1;
-/// For tolerances of this value or more, steps with contact cause most of the cost of a model with contact.
-/// These steps are at most of third order for every method.
+/// For tolerances of this value or more, the choice for a model with contact in which nothing is elastic or
+/// damped is dormand_prince: steps with contact then cause most of the cost, and these steps are at most of
+/// third order for every method.
 inline constexpr double kCoarse = 1e-6;
 /// kTrialTime: estimated time after which a trial ends, microseconds; trials of small models end earlier.
 /// kMinCost: smallest value of max_cost(), evaluations.

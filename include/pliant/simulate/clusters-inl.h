@@ -20,7 +20,7 @@ namespace pliant {
 
 namespace clusters {
 
-/// Largest number of simulations that are kept for clusters with equal first parts.
+/// Largest number of simulations that are kept for clusters with the same first part.
 inline constexpr std::size_t kMaxKept = 4;
 /// A simulation that is not used is kept for this number of intervals, or up to twice as many.
 inline constexpr long kKeptFor = 64;

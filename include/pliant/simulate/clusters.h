@@ -1,6 +1,6 @@
-// Clusters: sets of bodies that may meet within an interval, in a simulation with a tolerance. Each cluster
-// steps alone, as a simulation of its parts, with its own step lengths, impact times and sleep (README.md of
-// this folder).
+// Clusters: sets of bodies that may meet within an interval of time, in a simulation with a tolerance. An
+// interval is at most ContactSettings::interval long. Each cluster steps alone, as a simulation of its parts,
+// with its own step lengths, impact times and sleep (README.md of this folder).
 #pragma once
 
 #include <memory>

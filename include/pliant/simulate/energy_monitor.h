@@ -8,8 +8,8 @@ namespace pliant {
 
 /// Compares the error of the energy balance with the energy that could move: the kinetic energy at the start,
 /// plus the potential energy at the start above its lowest value, plus the magnitudes of all works. The
-/// kinetic energy of a motion without error is at most this energy. An error that grows hardly changes this
-/// energy.
+/// kinetic energy of a motion without error is at most this energy. The kinetic energy after the start does
+/// not count, so that an error that grows hardly changes this energy.
 class EnergyMonitor {
  public:
   explicit EnergyMonitor(const Model& model);

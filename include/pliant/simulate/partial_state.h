@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// Copies the state of the parts of `some` from a state of the whole model, with start and step. h is the
-/// smallest h in the StepMemory of the parts; error, contact_residual and contact_cache_age are the largest
-/// values in the StepMemory of the parts. The works become 0.
+/// Copies the state of the parts of `some`, State::start and State::step from a state of the whole model. h
+/// is the smallest h in the StepMemory of the parts; error, contact_residual and contact_cache_age are the
+/// largest values in the StepMemory of the parts. The works become 0.
 void extract_state(const Model& whole, const State& state, const Model& some, State& part);
 
 /// Copies the state of the parts of `some` back to a state of the whole model, and adds the works. Each of

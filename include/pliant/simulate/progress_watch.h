@@ -20,7 +20,8 @@ struct SlowProgress {
   std::string fastest;   ///< text: the velocity that changes most in the last step (ErrorScale::worst)
 };
 
-/// Counts the accepted steps of a simulation and their work in windows of consecutive steps.
+/// Counts the accepted steps of a simulation, and their rejected attempts, impacts and evaluations, in
+/// windows of consecutive steps.
 class ProgressWatch {
  public:
   /// Number of steps in a window. A window is slow if its steps advance by at most kSlowShare of the interval

@@ -61,8 +61,8 @@ class Simulation {
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
   /// Continues from another state of this model. Forgets the contacts of the last step, and the impulses of
-  /// joints that are later than the time of the new state. Throws std::invalid_argument if the state does not
-  /// fit the model.
+  /// joints after the time of the new state. Throws std::invalid_argument if the state does not fit the
+  /// model.
   void set_state(State state);
   double time() const { return state_.time(); }
   /// Computes the inputs of the body (MultiBody::input) from the time t (s) and the state.

@@ -31,17 +31,18 @@ inline constexpr double kMaxPhase = 1;
 /// limits the step is at most kResidual. The errors of eigenvalues are then of second order in the residual.
 inline constexpr int kVectors = 20;
 inline constexpr double kResidual = 0.02;
-/// If the residual is above kExact, the eigenvalue is increased by the residual and by kMargin, at most by
-/// kMaxMargin, so that the step is safe.
+/// The step is divided by 1 + the residual, so that it is safe. If the residual is above kExact, the divisor
+/// is 1 + residual + kMargin, at most 1 + kMaxMargin.
 inline constexpr double kExact = 1e-3, kMargin = 0.01, kMaxMargin = 0.05;
 /// For real eigenvalues that limit the step to at most kNearLimit times the smallest limit, the limit is
 /// computed again from the resistance against the motion. kMaxExamined: largest number of these eigenvalues.
 inline constexpr double kNearLimit = 1.25;
 inline constexpr std::size_t kMaxExamined = 12;
-/// A residual above this share is reported.
+/// A residual above this value is reported (StableStep::uncounted), and upper bounds of local elasticity,
+/// element by element, then also limit the step.
 inline constexpr double kReported = 0.3;
 /// If the accelerations deform or turn a part by more than this number in one stable step, in sizes of the
-/// part or radians, the start is far from equilibrium.
+/// part or radians, the start is far from equilibrium, which is reported (StableStep::uncounted).
 inline constexpr double kFar = 0.5;
 /// Distance of a part from its initial position, in sizes of the part, above which is_far_out() is true.
 inline constexpr double kFarOut = 1e6;
@@ -332,8 +333,8 @@ class StableStepSearch {
                             std::string(method_.name()) + " integrates their elasticity implicitly";
   }
 
-  /// Limits the step by a factor of the local stiffness. The exact integration of free modes does not include
-  /// the factor; the method integrates the remaining force.
+  /// Limits the step for a part whose local stiffness is multiplied by a factor, a function of time. The
+  /// exact integration of free modes does not include the factor; the method integrates the remaining force.
   void limit_by_factor(const PartModel& m, const TimeFunction& factor) {
     const std::string name = "part '" + m.part->name() + "'";
     const double now = factor.value(state_.time());

@@ -10,8 +10,8 @@
 namespace pliant {
 
 namespace {
-/// A joint begins to act at the time `on`. A kink is regarded as a kink at `on` if it is earlier by less than
-/// kUlps times the machine epsilon times |on|.
+/// A joint acts from the time `on`. Its kinks include a kink that is earlier than `on` by a rounding error:
+/// by less than kUlps times the machine epsilon times |on|.
 constexpr double kUlps = 8;
 
 /// Returns the first multiple of 1 / rate later than `after` and no later than `until`, s.

@@ -13,7 +13,8 @@ void put(std::string& bytes, Value value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// A sum of normals shorter than this is zero apart from rounding errors.
+/// A sum of normals shorter than this is zero apart from rounding errors. The vertex then gets the normal of
+/// its first triangle.
 constexpr double kNoNormal = 1e-9;
 
 Eigen::Matrix3Xd vertex_normals(const TriangleMesh& mesh) {

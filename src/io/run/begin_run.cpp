@@ -166,8 +166,8 @@ struct Run::Continuation {
   RunWork work;                ///< of the run up to this state
 };
 
-/// Sets a continuation to a checkpoint that is later than its first `keep` recorded states. Returns false if
-/// there is no such checkpoint.
+/// Sets a continuation to a checkpoint that is later than the first from.keep recorded states. Returns false
+/// if there is no such checkpoint.
 bool Run::find_saved_state(const Recording& recorded, Continuation& from) {
   FoundCheckpoint found = find_checkpoint(folder_->path(), simulation_->model(), from.keep, schedule_.end());
   if (!found.damage.empty()) note(found.damage + "; the run continues from an earlier state");
@@ -207,9 +207,9 @@ Run::Continuation Run::find_continuation(const Recording& recorded) {
   return from;
 }
 
-/// Includes the first `states` recorded states in the run record, like the session that recorded them.
-/// Notes that run.json already has are not repeated. Throws Interrupted if `stop` of the options returns
-/// true; the run can then be resumed again.
+/// Includes the first `states` recorded states in the largest values and the notes of the run record, as the
+/// session that recorded these states did. Notes that run.json already has are not repeated. Throws
+/// Interrupted if `stop` of the options returns true; the run can then be resumed again.
 void Run::observe_recorded(const Recording& recorded, std::int64_t states) {
   record_.max_gap = record_.max_depth = record_.max_energy = 0;
   progress_->begin("read", static_cast<double>(states), "states");

@@ -20,13 +20,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Ratio of a tried step to the previous tried step, and the smallest tried step as a share of the step of
-/// the failed run.
+/// Trials with fractions of the step of the failed run: ratio of a step to the step before, and bound above
+/// which these steps are, as a share of the step of the failed run. Repeated trials may have shorter steps.
 constexpr double kShorter = 0.25, kShortest = 1e-3;
 /// Tried tolerances as multiples of the tolerance of the failed run.
 constexpr double kTolerances[] = {0.01, 10, 100};
-/// A trial with a large error of the energy balance is repeated at most this number of times with a shorter
-/// step or a smaller tolerance. The expected error is then kSafety times the largest error without a warning.
+/// Largest number of repetitions in all trials together. A trial with a large error of the energy balance is
+/// repeated with a shorter step or a smaller tolerance, so that the expected error is kSafety times the
+/// largest error without a warning.
 constexpr int kMaxRefinements = 3;
 constexpr double kSafety = 0.3;
 
@@ -80,7 +81,7 @@ class Trials {
       return {Outcome::reaches_end, monitor.share()};
     } catch (const ChoiceStopped&) {
       return {Outcome::unfinished};
-    } catch (const std::exception&) {  // the advice never replaces the failure of the run
+    } catch (const std::exception&) {  // an exception in a trial must not hide the failure of the run
       return {Outcome::fails};
     }
   }
@@ -119,8 +120,8 @@ std::vector<Trial> other_tolerances(const Scene& scene, const FailedRun& failed)
   return trials;
 }
 
-/// Returns the trials in their order. The integrator "auto" keeps the tolerance of the scene, as the option
-/// --integrator does.
+/// Returns the trials in their order. As in `pliant run --integrator auto`, the trial with "auto" has the
+/// tolerance of the scene, or kStandardTolerance if the scene has none.
 std::vector<Trial> trials_for(Scene& scene, const FailedRun& failed) {
   std::vector<Trial> trials;
   try {
@@ -181,13 +182,14 @@ std::string find_remedy(Scene& scene, const FailedRun& failed, double seconds,
       least_share = result.share;
       inaccurate = advice(trial, result.share);
     }
-    // A trial with "auto" in place of the method of the scene is not refined: a user who follows the advice
-    // "a tolerance of E" keeps the method of the scene.
+    // If "auto" is not the method of the failed run, the trial with "auto" is not repeated with a smaller
+    // tolerance. The advice would then be "a tolerance of E", and a user who follows this advice keeps the
+    // method of the failed run.
     if (trial.integrator == failed.integrator && refinements++ < kMaxRefinements)
       left.push_front(refined(trial, result.share));
   }
   if (!inaccurate.empty()) return inaccurate;
-  std::string text = "trials of about " + rounded_text(seconds, 2) + " s found no remedy";
+  std::string text = "trial runs, at most " + rounded_text(seconds, 2) + " s in total, found no remedy";
   if (!failing.empty()) text += "; they failed with " + failing;
   if (!unfinished.empty()) text += "; they did not finish with " + unfinished;
   return text;

@@ -216,7 +216,7 @@ void Run::save_checkpoint() {
   checkpointed_ = WallClock::now();
 }
 
-/// Sets the progress and the checksums of the recorded states in the run record.
+/// Sets the progress, the counters and the checksums of the recorded states in the run record.
 void Run::update_record() {
   record_.time = simulation_->time();
   record_.states = writer_->rows();
@@ -236,7 +236,8 @@ void Run::update_record() {
   set_final_values();
 }
 
-/// Sets the work of all sessions in the run record. A resumed session has done no work before its first step.
+/// Sets the counters of all sessions in the run record. Before the first step of a resumed session, they are
+/// the counters of the earlier sessions.
 void Run::count_work() {
   const RunWork session{simulation_->step_counters(), simulation_->counters()};
   if (!work_at_start_)

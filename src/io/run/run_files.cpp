@@ -34,7 +34,7 @@ int writing_process(const std::string& name) {
   if (mark == std::string::npos) return -1;
   const std::string tail = name.substr(mark + std::string(kPart).size());
   const std::size_t dash = tail.find('-');
-  constexpr std::size_t max_digits = 9;  // such a number is an int
+  constexpr std::size_t max_digits = 9;  // every number with nine digits is an int
   if (dash == std::string::npos || dash > max_digits || !all_digits(tail.substr(0, dash)) ||
       !all_digits(tail.substr(dash + 1)))
     return -1;

@@ -1,7 +1,7 @@
-// Displacement polynomials over the body of a solid. The fields phi = T L are combinations of the Legendre
-// products L. The mean of phi_a phi_b over the volume is delta_ab, and d phi / dX_r = Delta_r phi with a
-// matrix Delta_r. With the volume V and Lame's constants lambda and mu, the stiffness of linear elasticity is
-// then
+// Displacement polynomials over the body of a solid. The fields phi = T L are combinations of the products
+// L of Legendre polynomials (LegendreProducts). The mean of phi_a phi_b over the volume is delta_ab, and
+// d phi / dX_r = Delta_r phi with a matrix Delta_r. With the volume V and Lame's constants lambda and mu, the
+// stiffness of linear elasticity is then
 //   K_rs = V (lambda Delta_r Delta_s^T + mu Delta_s Delta_r^T + delta_rs mu sum_t Delta_t Delta_t^T),
 // without a quadrature of gradients.
 #include <algorithm>

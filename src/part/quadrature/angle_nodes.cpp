@@ -133,7 +133,8 @@ std::vector<AngleNode> nodes_of(const std::vector<Panel>& panels, int n, const A
 
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n) {
   return nodes_of(panels, n, [n](const Panel& panel, std::vector<AngleNode>& nodes) {
-    // With a small exponent the superellipse is nearly a square, and varies only next to the corner.
+    // With a small exponent the superellipse is nearly a square, and varies only next to the corner, at 45
+    // degrees. A LogPanel has its densest nodes there.
     constexpr double small = 0.25;
     if (panel.eps < small)
       LogPanel(panel, Kinks(), nodes).add(n);

@@ -193,7 +193,7 @@ inline constexpr std::size_t kMaxPoints = 2'000'000;
   std::string names;
   for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
   throw std::invalid_argument("part '" + part.name() + "': its " + subject + " needs more than " +
-                              std::to_string(kMaxPoints) + " points to be exact for all of " + names +
+                              std::to_string(kMaxPoints) + " points to be exact over the ranges of " + names +
                               "; narrow the limits of some of them (min, max), or freeze them");
 }
 

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Largest size of a mesh file and of all buffers of a glTF file.
+/// Largest size of a mesh file, and of all buffers of a glTF file together.
 inline constexpr std::size_t kMaxMeshBytes = std::size_t{256} << 20;
 
 /// Returns the bytes of a file. Throws FileError for a file that cannot be read, has more than kMaxMeshBytes,

@@ -21,9 +21,9 @@ namespace {
 
 /// The largest number of additional bytes between the header and the data of a binary file that the reader
 /// can skip. Some programs pad the header, for example to a multiple of 64 bytes. The lengths of lists are in
-/// the data, so that the reader must try each place. Reading from a wrong place usually fails soon, at a
-/// number that is not finite or at an impossible length or number of a vertex. Otherwise the reading ends
-/// before the end of the file.
+/// the data, so that the reader must try each place. Reading from a wrong place usually fails soon: at a
+/// number that is not finite, an impossible length of a list, or an impossible vertex number. Otherwise the
+/// reading ends before the end of the file.
 constexpr std::size_t kMaxDataShift = 64;
 
 /// The values of a text file, one after the other.
@@ -46,7 +46,8 @@ class TextValues {
   /// Number of bytes that are left, plus 1, because no blank follows the last value.
   std::size_t remaining() const { return words_.remaining() + 1; }
   [[noreturn]] void fail(const std::string&, const std::string& expected) { words_.fail(expected); }
-  /// Returns the number of bytes after the last value, without blanks and line ends.
+  /// Returns the number of bytes from the next word to the end of the file; 0 if only blanks and line ends
+  /// follow the last value.
   std::size_t left_over() {
     const std::size_t word = words_.next().size();
     return word == 0 ? 0 : word + words_.remaining();

@@ -1,5 +1,6 @@
 // Reads PLY files, text and binary: x, y, z of the element vertex, and the list vertex_indices (or
-// vertex_index) of the element face. Other elements and properties are ignored.
+// vertex_index) of the element face. The element tristrips is refused. Other elements and properties are
+// ignored.
 #pragma once
 
 #include "raw_mesh.h"

@@ -16,7 +16,8 @@ namespace pliant {
 
 namespace {
 
-/// A point with w - 1 up to this number is on the surface; w is the radial coordinate.
+/// A point of a ring with w - 1 up to this number is moved to the surface; w is the radial coordinate. In a
+/// solid, a point with a larger w is a fault.
 constexpr double kOnSurface = 1e-9;
 /// Smallest radius as a share of the size of a part. With a smaller ring, rounding errors of its points would
 /// determine the orientation.

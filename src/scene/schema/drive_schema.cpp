@@ -34,7 +34,7 @@ Record drive_of(std::string name, const std::string& what, Field target, Field r
        optional("damping", state_function(units.damping, at_least(0)), "Damping.", "0"),
        optional("force", state_function(units.force, unbounded()), "Force in addition.", "0"),
        optional("max_force", number(above(0), units.force),
-                "Bound on the magnitude of the force; when absent, there is none.")}};
+                "Bound on the magnitude of the whole force; when absent, there is none.")}};
 }
 
 Field target_of(const Units& units) {

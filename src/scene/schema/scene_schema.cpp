@@ -207,7 +207,7 @@ Record time_record() {
            "saves.",
            "0"),
        optional("solver",
-                choice({{"auto", "chosen for each island of parts by a fixed cost model"},
+                choice({{"auto", "chosen by a fixed cost model for each set of parts that joints connect"},
                         {"blocks", "blocks of C_q M^-1 C_q^T"},
                         {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
                 "Method for the constraint forces of joints.", "\"auto\"")}};
@@ -283,7 +283,7 @@ Record body_force_record() {
            required("acceleration", state_vector("m/s^2"), "The force per mass, along the world's axes.",
                     "[\"-4 * x\", 0, 0]"),
            optional("resolution", integer(between(3, DistributedForce::kMaxResolution)),
-                    "Number of points along each direction of a smooth panel of the shape. A part with nodes "
+                    "Number of points along each direction of a smooth piece of the shape. A part with nodes "
                     "or modes has the nodes of its mesh.",
                     std::to_string(DistributedForce::kBodyResolution))}};
 }

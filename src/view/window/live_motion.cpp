@@ -301,7 +301,7 @@ void LiveMotion::add_stiffnesses(const std::string& part) {
 void LiveMotion::report(std::ostream& out) const {
   const Snapshot& now = *snapshot_;
   out << std::setprecision(17) << "time " << now.state.time() << " s, speed " << now.speed
-      << ", wall time of the last interval " << now.interval_cost << " s, late by " << now.delay << " s";
+      << ", last interval computed in " << now.interval_cost << " s, late by " << now.delay << " s";
   if (now.dragging) out << ", held " << now.held.transpose() << ", target " << now.target.transpose();
   out << "\n";
 }

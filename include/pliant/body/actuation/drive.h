@@ -1,8 +1,8 @@
 // Drives: springs, dampers, servos and motors that act on a coordinate of a joint or on a parameter of a
 // part.
 //   F = k (target - x) + c (target_rate - x_dot) + force,   |F| <= max_force
-// Here x is the coordinate. For an angle, multiples of 2 pi are removed from target - x, so that it is in
-// [-pi, pi].
+// Here x is the coordinate. For the angle of a hinge and for a twist, multiples of 2 pi are removed from
+// target - x, so that the difference is in [-pi, pi].
 #pragma once
 
 #include <limits>
@@ -16,7 +16,7 @@ namespace pliant {
 struct Drive {
   std::string name;
   Signal on;             ///< the coordinate x: of kind coordinate or parameter
-  bool angle = false;    ///< whether x is an angle
+  bool angle = false;    ///< whether x is the angle of a hinge, or a twist
   StateFunction target;  ///< m or rad
   /// Target of the rate, m/s or rad/s. Default: the time derivative of `target` if `target` is a function of
   /// time only, else 0.

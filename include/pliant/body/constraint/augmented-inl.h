@@ -18,8 +18,8 @@ namespace detail {
 
 /// Entry of the diagonal d (augmented.h) in a row, divided by diagonal_of_ends() of the row.
 inline constexpr double kRegularisation = 1e-9;
-/// A row of unit length is regarded as dependent on the rows before it if its distance from their span is
-/// below this number.
+/// dependent_rows() regards a row of C_q, scaled to unit length, as dependent on other rows if its distance
+/// from their span is below this number.
 inline constexpr double kDependentRow = 3e-5;
 /// Largest number of refinements, and number of successive refinements without improvement that ends the
 /// iteration.

@@ -94,10 +94,10 @@ struct ConstraintWorkspace {
   std::vector<JointMode> modes;  ///< mode of each joint at this evaluation
   Gains gains;                   ///< alpha and beta of Baumgarte's terms
   bool stabilise_closed = true;  ///< whether closed joints have Baumgarte's terms; closing joints always do
-  RankRule rank = RankRule::decide;  ///< rule of the factors of W_c for dependent rows
-  double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
+  RankRule rank = RankRule::decide;  ///< rule by which the factors of W_c find dependent rows
+  double max_speed = 0;              ///< largest speed at which a gap closes / JointModel::length, 1/s
   VecX<S> C, C_dot, bias;            ///< in m, m/s and m/s^2, n_rows each; bias = -gamma
-  VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
+  VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows (group.h)
   std::vector<JointFactor<S>> W_c;   ///< for each island: the factor of the joints that act
   /// For each island with closing joints: the factor of the closed joints only. Impulses keep the closed
   /// joints closed and may open the closing joints.

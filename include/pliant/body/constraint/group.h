@@ -80,8 +80,8 @@ class Group {
   /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with W_c
   /// lambda = -rows. Returns lambda, which the next call overwrites. W_c may be the matrix of an earlier
   /// configuration. Then lambda is approximate, but the forces act along the present C_q^T, so that the two
-  /// ends of a joint have opposite forces. as_factored: whether M^-1 C_q^T in the workspace has not changed
-  /// since the factorisation.
+  /// ends of a joint have opposite forces. as_factored: whether to use M^-1 C_q^T of the workspace. C_q must
+  /// then be that of the factorisation.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const;
 
  private:

@@ -411,7 +411,8 @@ namespace detail {
 /// iteration is slow.
 inline constexpr int kMaxClosingIterations = 8;
 inline constexpr double kSlowClosing = 0.5;
-/// Number of iterations that cost as much as a new factor.
+/// Number of iterations that cost as much as a new factor. A new factor is computed if the joints would still
+/// be open after this number of further iterations.
 inline constexpr int kIterationsPerFactor = 2;
 
 /// Iterates until the joints are closed. measure() returns the largest gap divided by the allowed gap.

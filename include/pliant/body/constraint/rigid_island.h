@@ -59,9 +59,9 @@ struct RigidWorkspace {
 class RigidIsland {
  public:
   /// Returns whether an island can be evaluated as a rigid island. Its parts must be rigid, with inertia in
-  /// all six velocities, without drag and with at most kMaxArms joints each (rigid_island-inl.h). All its
-  /// joints must be ball joints between two parts, or between a part and a fixed point. The joint system must
-  /// be solved by the blocks of W_c, not by the augmented matrix.
+  /// all six velocities, without drag, without Part::use_diagonal_mass() and with at most kMaxArms joints
+  /// each (rigid_island-inl.h). All its joints must be ball joints between two parts, or between a part and a
+  /// fixed point. The joint system must be solved by the blocks of W_c, not by the augmented matrix.
   static bool applies_to(const Model& model, const Island& island);
 
   RigidIsland(const Model& model, const Island& island);
@@ -128,7 +128,7 @@ class RigidIsland {
     int pair, lane;  ///< entry in RigidWorkspace::mobility, and lane of the part
     bool transposed;
     double sign;
-    int target;  ///< offset of the block
+    int target;  ///< offset of the block in the values of the factor of W_c
   };
   /// A part with loads: its number in the model, and its place in the Fours.
   struct Load {

@@ -14,7 +14,7 @@ class Part;
 /// A force that acts on all points of a part.
 struct DistributedForce {
   enum class Domain {
-    surface,  ///< per area of the present surface; only the outer side
+    surface,  ///< per area of the present surface; of a shell, the outer side only
     body,     ///< per mass
   };
   std::string name;

@@ -74,8 +74,8 @@ bool acts(const Evaluation<S>& e, const DriveModel& m) {
   return false;
 }
 
-/// Returns the difference of two values of the coordinate of a drive. For an angle, adds a multiple of 2 pi,
-/// so that the result is in [-pi, pi].
+/// Returns the difference of two values of the coordinate of a drive. If Drive::angle is true, adds a
+/// multiple of 2 pi, so that the result is in [-pi, pi].
 template <class S>
 S coordinate_difference(const Drive& drive, const S& difference) {
   if (!drive.angle) return difference;

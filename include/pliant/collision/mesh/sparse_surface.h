@@ -1,4 +1,4 @@
-// The surface of a part with no more mesh lines than contact with parts that deform locally needs. A box gets
+// The surface of a part as a mesh with few lines, for contact with parts that deform locally. A box gets
 // few cells, the sides of a cylinder few cells along the axis, and a bent box many cells along the bend only.
 #pragma once
 

@@ -21,8 +21,8 @@ struct ErrorEstimate {
   double velocity = 0;             ///< velocity of the frames, m/s
   double angular_velocity = 0;     ///< angular velocity of the frames, rad/s
   double energy = 0;               ///< total energy, J
-  double joint_force = 0;          ///< force of a joint with equal modes in both runs, N
-  double joint_torque = 0;         ///< torque of a joint with equal modes in both runs, N m
+  double joint_force = 0;          ///< force of a joint that has the same JointMode in both runs, N
+  double joint_torque = 0;         ///< torque of a joint that has the same JointMode in both runs, N m
   double gap = 0;                  ///< largest gap of a closed joint of the run, m (not a difference)
   double tolerance = 0, step = 0;  ///< tolerance and fixed step (s) of the repetition; one of them is 0
 };

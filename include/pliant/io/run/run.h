@@ -35,7 +35,9 @@ struct RunOptions {
   std::string scene_file;            ///< path of the scene, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
   std::string graphics;              ///< graphics library, for run.json; empty without pictures
-  double remedy_seconds = 2;         ///< wall time of the trials after a failure, see find_remedy(), s
+  /// Wall time, s. The limit for all trials together after a failure (find_remedy()) is three times the wall
+  /// time of the failed run, but at least remedy_seconds, and at most ten times remedy_seconds.
+  double remedy_seconds = 2;
   /// Wall time between two checkpoints, s; with 0, a checkpoint is written after every step.
   double checkpoint_every = kStandardCheckpointInterval;
   /// Called before every step; true ends the run so that it can be resumed. Also called while the method of
@@ -158,7 +160,7 @@ class Run {
   std::set<std::string> reported_redundant_, reported_turned_;
   std::set<TouchingPair> reported_overlaps_;
   std::vector<bool> reported_acting_;
-  // The work up to the state from which a resumed run continues, and the counters of the simulation there.
+  // At the state from which a resumed run continues: the counters of the whole run, and of the simulation.
   RunWork earlier_work_;
   std::optional<RunWork> work_at_start_;  // none in a new run
   std::size_t written_notes_ = 0;         // number of notes in run.json

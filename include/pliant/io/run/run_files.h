@@ -15,11 +15,12 @@ inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
 inline constexpr const char* kModesFile = "modes.npy";  ///< entries of a state besides t, q and v
-inline constexpr const char* kWorkFile = "work.npy";    ///< the work of the run up to each state
+inline constexpr const char* kWorkFile = "work.npy";    ///< the counters of the run up to each state
 inline constexpr const char* kContactCacheFile =
     "supports.npy";  ///< the contact cache of a state: contacts for the warm start of the next step
 inline constexpr const char* kChecksumsFile = "checksums.npy";  ///< checksums of the tables of states
-/// Checkpoints: states between two recorded states. A new checkpoint replaces the older of the two.
+/// Two checkpoint files, each with one state between two recorded states. A new checkpoint replaces the older
+/// checkpoint.
 inline constexpr const char* kCheckpointFiles[] = {"checkpoint_1.npy", "checkpoint_2.npy"};
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
 // Files of a run that records contacts: tables written during the run, and CSV files written at its end.
@@ -34,8 +35,10 @@ inline constexpr const char* kMeshFolder = "meshes";
 inline constexpr const char* kFrameFolder = "frames";
 inline constexpr const char* kMaterialFile = "parts.mtl";  ///< colours of meshes; in kMeshFolder
 
-// Names of the folder of a new run inside the folder of the run, see run_folder.h. While its files are
-// written, the name is kNewRun with the ending of an unfinished file; then kWholeNewRun; then kMovingNewRun.
+// The beginning of a new run, see run_folder.h. The files of the new run are first in a folder inside the
+// folder of the run. The name of this inner folder is kNewRun with the ending ".part-PID-N" while the files
+// are written, kWholeNewRun when all files are whole, and kMovingNewRun while the files are moved to the
+// folder of the run. kNewRunFile is a file in the folder of the run.
 inline constexpr const char* kNewRun = "new_run";
 inline constexpr const char* kNewRunFile = "new_run.json";  ///< options of a run that has not begun
 inline constexpr const char* kWholeNewRun = "new_run.whole";

@@ -70,7 +70,7 @@ struct RunRecord {
   std::optional<ErrorEstimate> error;  ///< error estimate, if requested
   std::vector<std::string>
       velocities_without_inertia;    ///< parameters and frame velocities without inertia, kept constant
-  std::vector<std::string> skipped;  ///< computations that the scene did not need
+  std::vector<std::string> skipped;  ///< computations that the engine skipped, see skipped.h
   std::vector<std::string> notes;    ///< warnings and automatic choices
   /// Written files, relative to the folder. A series of files is one entry, for example "meshes/frame_*.obj".
   std::vector<std::string> files;

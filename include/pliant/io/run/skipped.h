@@ -1,4 +1,5 @@
-// The computations that a model does not need, as texts for "skipped" in run.json.
+// The computations that the engine skips because a model does not need them, as texts for "skipped" in
+// run.json.
 #pragma once
 
 #include <string>
@@ -8,7 +9,7 @@
 
 namespace pliant {
 
-/// Returns one text per computation that the model skips.
+/// Returns one text per skipped computation.
 std::vector<std::string> skipped_work(const Model& model);
 
 }  // namespace pliant

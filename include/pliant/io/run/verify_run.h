@@ -14,7 +14,7 @@ namespace pliant {
 
 struct Verification {
   std::vector<std::string> checked;  ///< one text for each kind of file that was checked
-  std::vector<std::string> faults;   ///< one text for each damaged or missing file
+  std::vector<std::string> faults;   ///< texts about files and states that are damaged or missing
 };
 
 /// A run whose files are verified.
@@ -34,8 +34,8 @@ void verify_whole_files(const std::filesystem::path& folder, const RunRecord& re
 /// and each state with its check number.
 void verify_tables(const VerifiedRun& run, Verification& result);
 
-/// If run.json lists mesh files or pictures, checks that the file of each frame exists. A mesh file must have
-/// the bytes that the recording gives, and a picture must be undamaged. Throws Interrupted.
+/// If run.json lists OBJ files or pictures, checks that the file of each frame exists. An OBJ file must have
+/// the bytes that the recording gives, and a picture must be undamaged (check_png()). Throws Interrupted.
 void verify_frames(const VerifiedRun& run, Progress& progress, Verification& result);
 
 }  // namespace pliant

@@ -1,6 +1,6 @@
 // Strain of a triangle from the change of its edges (natural strains, Argyris 1964). Edge k is opposite
-// corner k, e_k = x_(k+2) - x_(k+1), with indices modulo 3. The edges change by q_k (m^2). For a strain eps
-// in the plane of the triangle at rest,
+// corner k, e_k = x_(k+2) - x_(k+1), with indices modulo 3. q_k (m^2) measures the change of edge k. For a
+// strain eps in the plane of the triangle at rest,
 //   q_k = e_k . eps e_k,   eps = sum_k q_k B_k,   B_k = -(t_i t_j^T + t_j t_i^T)/(8 A^2),
 // with i, j the other two edges, t_k = e_k rotated by 90 degrees in the plane and A the area.
 //   small displacements    q_k = e_k . (d_(k+2) - d_(k+1))

@@ -1,6 +1,6 @@
-// Laws of membranes for large deformation: the energy W(q) of a triangle, J. q is the change of the three
-// edges (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A and
-// rest thickness t,
+// Laws of membranes for large deformation: the energy W(q) of a triangle, J. q measures the change of the
+// three edges (edge_strain.h). With Green's strain G = sum over edges i of q_i B_i, C = 1 + 2 G, rest area A
+// and rest thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
 //   neo-Hookean            W = A t mu/2 [tr C - 2 + V(D)],  D = det C.
 // The neo-Hookean laws are solids in plane stress: the thickness becomes sqrt(s) t, with s(D) such that the
@@ -19,7 +19,7 @@
 
 namespace pliant {
 
-/// Members of a law: its name, and `Triangles`, the constants of four triangles and the functions below.
+/// Members of a law: its name, and `Triangles` with the constants of four triangles and with these functions:
 /// set() computes the constants of one triangle with rest edges e. energy() returns W. tension() returns tau
 /// = dW/dq, N/m; linear_tension() returns the linearisation of tau at rest. T is Pack or a dual number.
 struct StVenantKirchhoffSheet {

@@ -1,5 +1,5 @@
-// Powers of two as scales. Multiplication by a power of two causes no rounding. A factorisation of a scaled
-// matrix therefore has the rounding errors of the original matrix, and its pivots do not depend on units.
+// Powers of two as scales of the rows and columns of a matrix. Multiplication by a power of two causes no
+// rounding. Scales make rows comparable, so that the choice of pivots hardly depends on units.
 #pragma once
 
 #include <cmath>

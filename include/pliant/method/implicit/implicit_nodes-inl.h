@@ -21,9 +21,9 @@ namespace pliant {
 
 namespace implicit_nodes {
 
-/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet. Mass is
-/// then added to S: first kFirstExtraMass times M, and in each further attempt kExtraMassGrowth times the
-/// mass of the attempt before, up to kMaxExtraMass times M.
+/// A pivot of S below kMinPivot times its entry of M indicates negative stiffness, as in a buckling sheet.
+/// Mass is then added to S: first kFirstExtraMass times M, and in each further attempt kExtraMassGrowth times
+/// the mass of the attempt before, up to kMaxExtraMass times M.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
 /// Size of the perturbation of the nodes, in sizes of the part. The sparsity pattern of K is found at the
 /// rest shape with perturbed nodes, so that no entry is zero by chance.

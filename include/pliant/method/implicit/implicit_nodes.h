@@ -11,7 +11,7 @@
 //   N^T x_d + S_r x_r + P^T kappa      = -c D_r r_v - K_r e_r - Q^T e - J^T (Q e_s - E)
 //   W^T x_d + P x_r                    = 0
 //   c w^T x_d - zeta                   = -c w^T e
-// with the number s = 1/(c + beta) and
+// with the unknown zeta of the dense term, the number s = 1/(c + beta) and
 //   S = (1 + c alpha) M + c (beta + c) K_d + c^2 K_p + c beta V_p (sparse),   N = M delta + Q,
 //   Q = (c^2 (K_p + w w^T) + c beta V_p) [0, 0, J],   S_r = G^T M G - P - P^T + c D_r + c^2 K_r + J^T Q,
 //   e = r_v + s r_q and e_a = e + s c alpha r_q of the local coordinates,

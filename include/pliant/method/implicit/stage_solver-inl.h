@@ -23,7 +23,8 @@ namespace pliant {
 
 namespace stage_solver {
 
-/// The iteration is slow if a change is more than this fraction of the previous change.
+/// An iteration with the matrix ends without convergence if a change, from the third on, is more than this
+/// fraction of the previous change.
 inline constexpr double kSlowContraction = 0.9;
 /// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
@@ -34,8 +35,8 @@ inline constexpr double kFreeIterations = 0.5;
 /// Largest number of matrices that are computed for one stage, in addition to the matrix at the start of the
 /// step.
 inline constexpr int kMaxMatrices = 4;
-/// Changes of at most this number, in sizes of the part and radians, are rounding errors if they do not
-/// shrink.
+/// A change of at most this number, in sizes of the part and radians, is a rounding error if it is more than
+/// kSlowContraction times the previous change. The iteration has then converged.
 inline constexpr double kRounding = 1e-12;
 /// Step of the difference quotients, relative to the scale of the coordinate: the size of the part for
 /// lengths and local coordinates, this size times the square root of the mass for modes, 1 for angles and

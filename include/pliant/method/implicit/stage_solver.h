@@ -5,8 +5,8 @@
 // derivatives A_q and A_v of v_dot by q and v. A_q and A_v are computed by difference quotients, as a rule at
 // most once in a step, and only if the iteration without the matrix would cost more. A_q and A_v are computed
 // again if the iteration with the matrix does not converge, for example because stiff parts have turned far.
-// A cluster contains the parts that joints, springs or mutual torques connect, and has one matrix. The matrix
-// is in the frames of the parts, because stiff directions turn with the parts.
+// A cluster contains the parts that joints or loads connect (Model::load_connections()), and has one matrix.
+// The matrix is in the frames of the parts, because stiff directions turn with the parts.
 #pragma once
 
 #include <string>

@@ -1,8 +1,9 @@
-// The metric of the projection after an implicit step. In the mass metric a projection would move stiff
-// parameters as easily as others, and this small displacement would cause unbounded elastic forces. For parts
-// without local deformation, (c beta + c^2) K_s is therefore added to the block of q_s in M. K_s is the
-// stiffness of the parameters, beta the coefficient of K_s in their damping, and c = gamma h of the stages.
-// Stiff parameters then respond to impulses as in a step. The linear and the angular momentum do not change.
+// The metric of the projection after an implicit step. In the mass metric a projection would displace stiff
+// parameters as much as soft parameters. The elastic forces of this displacement would grow without bound
+// with the stiffness. For parts without local deformation, (c beta + c^2) K_s is therefore added to the block
+// of q_s in M. K_s is the stiffness of the parameters, beta the coefficient of K_s in their damping, and
+// c = gamma h of the stages. Stiff parameters then respond to impulses as in a step. The linear and the
+// angular momentum do not change.
 #pragma once
 
 #include <pliant/body/dynamics.h>

@@ -40,7 +40,7 @@ struct LocalWorkspace {
 
   // Stage forces().
   double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W, at most 0
-  double actuation = 0;          ///< power of the change of the factor, W
+  double actuation = 0;          ///< power of the change of law_factor, W
   VecX<double> force;            ///< forces on the local coordinates
 
   // Stage accelerations().

@@ -44,7 +44,8 @@ struct NodalWorkspace final : LocalWorkspace {
   /// f: forces of the energies that depend on p. f_d: F_d, which are the forces of the energies that depend
   /// on d, and the damping by alpha. Both include the damping by beta.
   VecX<double> f, f_d;
-  /// sum G^T F_d, plus G^T of each force of push(), which the caller also adds to f_r of accelerations().
+  /// sum G^T F_d, plus G^T times each force of push(). The caller also adds these products to f_r of
+  /// accelerations(), so that they cancel in frame_force_d - f_r.
   VecMax<double> frame_force_d;
   VecMax<double> frame_force_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().

@@ -27,7 +27,8 @@ Vec3<double> ball_direction(const LatticePoint& p);
 /// Shell m with its triangles, counter-clockwise seen from outside. Each cell of a face of the cube is cut
 /// along the diagonal that points away from the middle of the face.
 struct BallSurface {
-  /// spacing: size of the cells along each axis of the lattice. Each size must divide 2 m (not checked).
+  /// spacing: edge lengths of the cells of the faces along the axes of the lattice, in steps of the lattice.
+  /// Each length must divide 2 m (not checked).
   explicit BallSurface(int m, const std::array<int, 3>& spacing = {1, 1, 1});
   std::vector<LatticePoint> points;
   std::map<LatticePoint, int> index;  ///< number of each point in `points`
