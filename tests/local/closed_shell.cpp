@@ -205,7 +205,7 @@ TEST_CASE("closed shell: the spectrum of the membrane on the mesh and masses of 
   }
 }
 
-TEST_CASE("closed shell: the spectrum with bending, all degrees on 2562 nodes", "[local][long]") {
+TEST_CASE("closed shell: the spectrum with bending, all degrees on 2562 nodes", "[local][.extended]") {
   const std::array<double, 11> coarse = bending_errors(3), fine = bending_errors(4),
                                largest{0,      0,      0.00021, 0.00034, 0.00096, 0.00245,
                                        0.0055, 0.0108, 0.0186,  0.0288,  0.04};

@@ -121,7 +121,7 @@ TEST_CASE("Lamb's sphere by enriched elements, lumped mass: fourth order", "[mod
   CHECK(order(coarse.breathing, fine.breathing, 2) > 2.7);
 }
 
-TEST_CASE("Lamb's sphere on fine meshes of linear elements", "[modes][long]") {
+TEST_CASE("Lamb's sphere on fine meshes of linear elements", "[modes][.extended]") {
   const LambErrors coarse = lamb<LinearTetrahedron>(5, Mass::lumped),
                    fine = lamb<LinearTetrahedron>(10, Mass::lumped);
   CHECK(order(coarse.S2, fine.S2, 2) == Approx(2).margin(0.15));
@@ -336,7 +336,7 @@ TEST_CASE("a free cylinder: bending, torsion and stretching frequencies", "[mode
   CHECK(order(coarse.torsion, bar.torsion, 1.5) > 3.2);
 }
 
-TEST_CASE("free cylinders on fine meshes: frequencies and their orders", "[modes][long]") {
+TEST_CASE("free cylinders on fine meshes: frequencies and their orders", "[modes][.extended]") {
   const FreeBar coarse = free_bar(10, 4), thick = free_bar(10, 5), slender = free_bar(20, 5);
   CHECK(thick.bending[0] == Approx(kBeam10[0]).epsilon(0.003));
   CHECK(thick.bending[1] == Approx(kBeam10[1]).epsilon(0.008));

@@ -86,7 +86,7 @@ class Hull {
   double size_;
   Convexity convexity_;
   enum class Map { identity, affine, curved } map_;
-  Mat3<double> F_;  // matrix of an affine map
+  Mat3<double> F_;                    // matrix of an affine map
   std::optional<CurvedHull> curved_;  // of a curved map
 };
 
