@@ -34,7 +34,7 @@ constexpr double kSameHeight = 1e-6;
 /// one flat face if the middle of their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
 /// The test whether a sample point is already the lowest point uses a stencil with a radius of kCorner, in
-/// units of CollisionSurface::spacing_ (on a ball pattern, twice the angle between neighbouring sample
+/// units of CollisionSurface::spacing_ (for MeshPattern::ball, twice the angle between neighbouring sample
 /// points). Differences of heights up to kHeightRounding, in sizes, are ignored as rounding errors. They
 /// would otherwise start a search on a flat face.
 constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
@@ -51,10 +51,11 @@ constexpr int kMaxStencilHalvings = 60;
 /// ShapeInterface::mesh_label(): a direction, or the pair of angles of a torus.
 using Stencil = std::array<Vec3<double>, 9>;
 
-/// Two coordinates for the places around a sample point. On a ball pattern they are latitude and longitude,
-/// because rims and edges follow these; near its poles they are offsets along any two tangents. On a torus
-/// they are u and v. Towards the poles the second coordinate is longitude divided by a factor above 1,
-/// because the sample points of a circle of latitude are farther apart in longitude there.
+/// Two coordinates for the places around a sample point. For MeshPattern::ball (all shapes except the torus)
+/// they are latitude and longitude, because rims and edges follow these; near the poles they are offsets
+/// along any two tangents. On a torus they are u and v. Towards the poles the second coordinate is longitude
+/// divided by a factor above 1, because the sample points of a circle of latitude are farther apart in
+/// longitude there.
 class Chart {
  public:
   Chart(const Vec3<double>& start, bool ball) : start_(start) {

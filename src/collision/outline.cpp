@@ -20,7 +20,7 @@ constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
 /// A point of the hull is a corner of the outline if its distance from the chord of its neighbours exceeds
 /// this, in sizes.
 constexpr double kMinCorner = 1e-5;
-/// A contact that is deeper than all corners by more than this, in sizes, is kept.
+/// The deepest contact is also kept if it is deeper than all corners by more than this, in sizes.
 constexpr double kDeeper = 1e-11;
 /// If there are at most this many contacts, all are kept.
 constexpr std::size_t kAlwaysKept = 4;

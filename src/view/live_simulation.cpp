@@ -188,7 +188,7 @@ void LiveSimulation::grab(const Point& point, double stiffness, double damping) 
   continue_from(std::move(state));
 }
 
-/// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the frame. As
+/// Returns constants of a drag with which the fixed steps are stable and resolve the motion of the part. As
 /// long as stability would reduce the constants, doubles the patch of nodes at the point, and with it the
 /// dragged mass, but not beyond kLargestPatch sizes of the part.
 SpringConstants LiveSimulation::bound_drag(const SpringConstants& constants, Point& at) const {

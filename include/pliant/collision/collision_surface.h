@@ -96,7 +96,7 @@ class CollisionSurface {
   mutable std::optional<Samples> samples_;
   mutable std::unique_ptr<PartPatches> patches_;  ///< computed at the first call of rest_patches()
   mutable bool patches_known_ = false;
-  /// Unit of the search, rad: twice the angle between neighbouring sample points of a ball pattern; on a
+  /// Unit of the search, rad: twice the angle between neighbouring sample points (MeshPattern::ball); on a
   /// torus the angle between neighbours around the tube.
   double spacing_;
   double thickness_;

@@ -39,9 +39,9 @@ class StatePicture {
   /// camera shows; aspect: width / height of the picture. Camera and ground settings of the scene take
   /// precedence.
   void set_view(const Eigen::AlignedBox3d& bodies, const Eigen::AlignedBox3d& all, double aspect);
-  /// Sets the scale of values. The scene must have a coloring. highest: the largest 99th percentile of the
-  /// values of a state (FrameMeshes::high_value()). If the coloring has no range, the scale goes from 0 to a
-  /// round number that is not below `highest`.
+  /// Sets the scale of values. The scene must have a coloring. highest: the 99th percentile of the values of
+  /// a state (FrameMeshes::high_value()), or the largest one of several states. If the coloring has no range,
+  /// the scale goes from 0 to a round number that is not below `highest`.
   void set_scale(double highest);
   const FrameMeshes& meshes() const { return meshes_; }
   /// The meshes of the last state, in the order of the bodies of the picture.

@@ -53,7 +53,7 @@ struct SpringStiffness {
   std::size_t number;  ///< of the spring in the scene
   double first;        ///< value in the scene, N/m
   double most;         ///< fixed steps are stable up to this value, at most 10 times `first`, N/m
-  std::shared_ptr<LinearKeys> path;  ///< the values so far
+  std::shared_ptr<LinearKeys> path;  ///< the values so far; nullptr if the user has not changed the stiffness
   double next;                       ///< value at the end of the next interval, N/m
 };
 

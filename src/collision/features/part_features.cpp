@@ -15,10 +15,11 @@ namespace {
 constexpr double kJetDifference = 1e-6;
 /// Points are within the boundary of a feature if their coordinates exceed it by at most this.
 constexpr double kOnBoundary = 1e-9;
-/// Least semi-axis of a rim, in sizes of the part. The tip of a cone is no rim.
+/// Least semi-axis of a rim, in sizes of the part. Features of a solid with a smaller rim, such as the tip of
+/// a cone, do not exist (exist()).
 constexpr double kLeastRim = 1e-3;
-/// Largest exponent of a superquadric or torus. With a larger exponent the curvature changes so much between
-/// patches that Newton's method often does not converge.
+/// Largest exponent of a superquadric or torus whose features exist (exist()). With a larger exponent the
+/// curvature changes so much between patches that Newton's method often does not converge.
 constexpr double kMostPointed = 1.4;
 /// Number of patches along an edge of a box, along both directions of a face or end face, and along the
 /// generators of a side.

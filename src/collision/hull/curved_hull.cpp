@@ -25,7 +25,7 @@ constexpr double kRimAngle = 1e-4;
 constexpr double kLevelSlope = 1e-9;
 /// Generators and edges are divided so that the chain turns by about this angle (rad) within an interval.
 constexpr double kTurnOfInterval = 1;
-/// Largest turn of the chain (rad) over a part with one piece.
+/// Largest turn of the chain (rad) over a part with one piece for which CurvedHull::exists() is true.
 constexpr double kMaxTurnOfPiece = 3;
 
 /// Returns approximately the largest angle (rad) between corresponding columns of two matrices.

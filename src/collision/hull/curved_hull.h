@@ -35,8 +35,8 @@ class CurvedHull {
   /// Returns the point (m) of the image of a piece that is farthest in the direction m (unit vector), at
   /// least among the points near it. slope: if given, the derivative of this point by m, m.
   Vec3<double> support(const Vec3<double>& m, int piece, Mat3<double>* slope) const;
-  /// Returns a point of the image of a piece that is nearly farthest in the direction m, without a search:
-  /// the farthest point of the affine map that touches the chain at the centre has the same material point.
+  /// Returns a point of the image of a piece that is nearly farthest in the direction m, without a search.
+  /// If the chain were replaced by its linearisation at the origin, this material point would be farthest.
   Vec3<double> rough_support(const Vec3<double>& m, int piece) const;
   /// Returns the outward unit normal of end face 0 or 1.
   Vec3<double> end_face_normal(int piece) const;
