@@ -3,7 +3,8 @@
 
 usage: references.py OUT.csv [PRECISION_REFERENCE.csv]
 
-The second method for A is a Taylor series, with 20 and with 25 digits. For other problems it is exact multipliers
+The second method for A is a Taylor series, with 20 and with 25 digits. For other problems
+it computes the accelerations with exact multipliers
 (multipliers_peer.py) with two tolerances. Columns: reference_difference: difference between the two methods of work_precision
 that compute the reference; second_difference: difference between the two runs of the second method; agreement: difference
 between the reference and the second method. errors.error() computes the last two columns.

@@ -1,4 +1,5 @@
-// The bodies, connectors, view and scale of values of the picture of a state.
+// Makes the picture of a state: its bodies, the lines of springs and joints, the camera, and the scale of
+// colours.
 #include <pliant/render/state_picture.h>
 
 #include <algorithm>

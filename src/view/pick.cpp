@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kPatch = 0.1;  // radius of the patch, in sizes of the part
+constexpr double kPatch = 0.1;  // radius of the patch of nodes around a picked point, in sizes of the part
 
 /// A point of a triangle on a ray: its distance from the origin of the ray, and the weights of the corners.
 struct Crossing {

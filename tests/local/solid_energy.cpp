@@ -126,7 +126,8 @@ TEMPLATE_TEST_CASE("forces are minus the gradients of the energy, derivatives ar
   CHECK(energy.energy(x) > 0);
 }
 
-TEMPLATE_TEST_CASE("the assembled stiffness is the derivative, and symmetric", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("the assembled stiffness is minus the derivative of the forces, and symmetric", "[solid]",
+                   PLIANT_ALL_KINDS) {
   const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
@@ -258,7 +259,8 @@ TEST_CASE("inverted elements are refused, or pushed back", "[solid]") {
   CHECK_THROWS_AS(force(corotated, x, &pool), InvertedElement);
   const auto neo_hookean = Kind<LinearTetrahedron, NeoHookean>::make(mesh);
   const VecX<double> f = force(neo_hookean, x);
-  // The force on the top node points up again.
+  // The node that is at the top at rest is now at the bottom. The force on it points up, to its place at
+  // rest.
   Eigen::Index top = 0;
   mesh.rest.col(2).maxCoeff(&top);
   CHECK(f.allFinite());

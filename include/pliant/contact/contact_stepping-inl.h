@@ -393,7 +393,7 @@ PLIANT_INLINE void ContactStepping::cut_at_friction_event(Motion& motion, Progre
                                                           double tolerance) {
   if (!few_parts_ || motion.resting.empty() || motion.contacts.empty()) return;
   if (!dynamics_.model().is_whole() && tolerance >= contact_stepping::kFrictionTolerance) return;
-  if (motion.predicted.soft || motion.travelled.soft) return;  // trial motions have no contacts at nodes
+  if (motion.predicted.soft || motion.travelled.soft) return;  // FrictionEvents finds no contacts at nodes
   const std::optional<double> event = friction_events_.first(
       {progress.method, progress.step, motion.free, motion.resting, motion.contacts}, tolerance);
   progress.clock.lap(times_.resolution);
@@ -486,7 +486,7 @@ PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std
                                                          !rest.has(c) && !impact_pairs.has(c));
                                 }),
                  contacts.end());
-  if (is_sequential()) {  // impacts that remain have no rebound
+  if (is_sequential()) {  // impacts that the sequence leaves have no rebound
     impact_sequence_.resolve(step, contacts, 0, free.min_impact_speed);
   } else {
     for (Contact& contact : contacts) {

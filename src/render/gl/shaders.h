@@ -21,7 +21,7 @@ extern const char* const kGroundVertex;
 extern const char* const kGroundFragment;
 extern const char* const kBackgroundVertex;
 extern const char* const kBackgroundFragment;
-extern const char* const kPresentFragment;  ///< pixels of a window from the samples
+extern const char* const kPresentFragment;  ///< pixels of a window from the samples of the drawn picture
 extern const char* const kTrackVertex;
 extern const char* const kTrackFragment;
 

@@ -1,4 +1,5 @@
-// The points of a coordinate of a joint or of its limit: a frame on each side (joints/joint.h, IsFramed).
+// The material points on which a coordinate of a joint, or its limit, depends: on each side, the four points
+// that define a frame (material_frame.h; IsFramed in joints/joint.h).
 #pragma once
 
 #include <pliant/body/material_frame.h>
