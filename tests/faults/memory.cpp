@@ -50,7 +50,10 @@ TEST_CASE("out of memory, at any allocation: code 8, and the folder stays usable
 TEST_CASE("out of memory in the graphics library: code 8, and the folder stays usable") {
   check_exhaustion(FaultyRun("--end 0.02 --size 32x24", "--png --quiet"), 12);
 }
-TEST_CASE("out of memory, at any of many allocations of a long run: code 8", "[long]") {
+TEST_CASE("out of memory, at any of 100 allocations of a long run: code 8", "[long]") {
+  check_exhaustion(FaultyRun("--threads 2 --tolerance 1e-5", "--obj --quiet"), 100);
+}
+TEST_CASE("out of memory, at any of 600 allocations of a long run: code 8", "[.extended]") {
   check_exhaustion(FaultyRun("--threads 2 --tolerance 1e-5", "--obj --quiet"), 600);
 }
 TEST_CASE("a picture that needs more memory than the process can have is refused before the simulation") {
