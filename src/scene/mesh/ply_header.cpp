@@ -80,10 +80,11 @@ Header read_header(const MeshBytes& file) {
       element.count = static_cast<std::size_t>(words.integer(
           words.on_line(), 0, std::numeric_limits<long long>::max(), "the number of elements of this kind"));
       for (const Element& other : header.elements)
-        if (other.name == element.name) words.fail("one element " + element.name + ", not two");
+        if (other.name == element.name)
+          words.fail("each element only once, not a second element " + element.name);
       header.elements.push_back(element);
     } else if (key == "property") {
-      if (header.elements.empty()) words.fail("a line element before the first property");
+      if (header.elements.empty()) words.fail("a line that starts with element before the first property");
       header.elements.back().properties.push_back(read_property(words));
     } else if (key == "end_header") {
       break;
@@ -91,7 +92,7 @@ Header read_header(const MeshBytes& file) {
       words.fail("format, element, property, comment, obj_info or end_header");
     }
   }
-  if (!has_format) words.fail("a line format before the end of the header");
+  if (!has_format) words.fail("a line that starts with format in the header");
   header.size = std::min(file.bytes.size(), file.bytes.find('\n', words.position()));
   if (header.size < file.bytes.size()) ++header.size;
   return header;
