@@ -192,13 +192,16 @@ void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double
                                      std::vector<Contact>& found) const {
   if (!model_->body().contact.obstacles[number].acts_before(t)) return;
   const Placed& placed = scratch_->parts[at(a)];
+  const Eigen::AlignedBox3d box = world_box(a);
+  const double far = std::max(max_gap, 0.0) + model_->parts()[at(a)].part->size();
+  if (box.exteriorDistance((*obstacles_)[number].box()) > far) return;
   const std::size_t first = found.size();
   std::optional<Hull> hull;
   if (!placed.axes && uses_hull(a)) hull.emplace(hull_of(a));
-  find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
-                placed.axes, hull ? &*hull : nullptr, world_box(a),
-                [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
-               (*obstacles_)[number], max_gap, scratch_->mesh_search, found);
+  find_on_mesh(
+      {*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
+       placed.axes, hull ? &*hull : nullptr, box, [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
+      (*obstacles_)[number], max_gap, scratch_->mesh_search, found);
   const ContactRule& rule = on_obstacles_[at(a) * obstacles_->size() + number];
   for (std::size_t k = first; k < found.size(); ++k) {
     found[k].a.part = a;

@@ -129,6 +129,50 @@ TEST_CASE("the contacts of a solid with a groove are those with two planes, and 
     }
 }
 
+TEST_CASE("one tip of a hook touches a table while the other tip is below the table top, beside it",
+          "[contact]") {
+  constexpr double depth = 1e-5, lower = 0.06, to_edge = 0.04, far = 1;  // m
+  const Kind hook{"hook", "capsule", {"bend"}, {{"r", 0.04}, {"l", 0.2}, {"bend.angle", 1.25}}};
+  MultiBody probe;
+  make(probe, hook, Vec3<double>::Zero(), Eigen::Quaterniond::Identity());
+  const Part& part = *probe.parts()[0];
+  const Eigen::Matrix3Xd places =
+      part.s({material_at(kPi / 2, 0, 1), material_at(-kPi / 2, 0, 1), material_at(0, 0, 0)},
+             part.parameters().rest());
+  const Vec3<double> tip_to_tip = places.col(1) - places.col(0), along = tip_to_tip.normalized();
+  const Vec3<double> middle = places.col(2) - 0.5 * (places.col(0) + places.col(1));
+  const Vec3<double> up = (middle - along.dot(middle) * along).normalized();
+  // The second tip is lower than the first by the length `lower`.
+  const double turn = std::asin(lower / tip_to_tip.norm());
+  Mat3<double> body, world;
+  body << along, up, along.cross(up);
+  world << std::cos(turn), std::sin(turn), 0, 0, 0, -1, -std::sin(turn), std::cos(turn), 0;
+  const Eigen::Quaterniond R(Mat3<double>(world * body.transpose()));
+
+  MultiBody over_plane;
+  make(over_plane, hook, Vec3<double>::Zero(), R);
+  over_plane.plane("plane", TimeVector(Vec3<double>(0, 0, -far)), {0, 0, 1});
+  const std::vector<Contact> tips = sorted_contacts(over_plane, 2 * far);
+  REQUIRE(tips.size() == 2);
+  CHECK(tips[0].gap - tips[1].gap > 0.75 * lower);  // below the other tip by more than half the thickness
+
+  const double edge = tips[0].x[0] + to_edge, top = tips[0].gap - far + depth;
+  Eigen::Matrix3Xd x(3, 4);
+  x << edge - far, edge, edge, edge - far,  //
+      -far, -far, far, far,                 //
+      top, top, top, top;
+  Eigen::Matrix3Xi triangles(3, 2);
+  triangles << 0, 0, 1, 2, 2, 3;
+  MultiBody over_table;
+  make(over_table, hook, Vec3<double>::Zero(), R);
+  over_table.obstacle("table", x, triangles);
+  const std::vector<Contact> found = sorted_contacts(over_table, 0);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].gap == Approx(-depth).epsilon(1e-6));
+  CHECK((found[0].normal - Vec3<double>::UnitZ()).norm() < 1e-12);
+  CHECK((found[0].x - tips[0].x).norm() < 1e-9);
+}
+
 TEST_CASE("the contact of a solid with a ridge is the point of the ridge that is deepest in the solid",
           "[contact]") {
   constexpr double wide = 3, level_there = -1e-3;

@@ -181,8 +181,7 @@ int Hull::parallel_end_face(const Vec3<double>& m, double one_point) const {
 
 void Hull::touching_points(const Vec3<double>& m, const Vec3<double>& along, int end_face,
                            const PointLimits& limits, int n_rim, std::vector<Vec3<double>>& points) const {
-  const bool flat = has_flat_regions(),
-             has_local_points = map_ == Map::curved && convexity_ == Convexity::unknown;
+  const bool flat = has_flat_regions(), has_local_points = map_ == Map::curved && !is_convex();
   for (int piece = 0; piece < pieces(); ++piece) {
     if (piece == end_face)
       add_rim(m, along, piece, limits.one_point, n_rim, points);

@@ -33,6 +33,8 @@ class Hull {
   /// and the chain is not affine, touching_points() searches from several starts.
   Hull(const Part& part, const ParameterValues<double>& values, Convexity convexity);
 
+  /// Whether the part is convex, or is treated as convex.
+  bool is_convex() const { return convexity_ == Convexity::convex; }
   int pieces() const { return shape_->hull_pieces(); }
   /// Whether a piece has nearly flat regions, other than end faces.
   bool has_flat_regions() const { return shape_->has_flat_regions(a_); }

@@ -389,13 +389,20 @@ Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) 
   bool at_end_face = false;
   const bool is_rough = !a.hull.rough_is_exact() || !b.hull.rough_is_exact();
   auto consider = [&](const Vec3<double>& n, bool is_end_face) {
-    double s = search.rough_s(n);
-    if (is_rough && s > max_gap) s = search.s(n);
-    if (s > best.gap || (s == best.gap && is_end_face)) {
-      best = {n, s};
+    const double rough = search.rough_s(n);
+    if (rough > max_gap) {
+      const double s = is_rough ? search.s(n) : rough;
+      if (s > max_gap) {
+        best = {n, s};
+        return true;
+      }
+    }
+    // The values of rough_s() are compared with each other: they all exceed s(n) somewhat.
+    if (rough > best.gap || (rough == best.gap && is_end_face)) {
+      best = {n, rough};
       at_end_face = is_end_face;
     }
-    return best.gap > max_gap;
+    return false;
   };
   if (d.squaredNorm() > 0 && consider(d.normalized(), false)) return best;
   for (const PlacedHull* part : {&a, &b}) {

@@ -23,6 +23,8 @@ constexpr double kSag = 0.02;
 constexpr double kSpacing = 0.4;
 /// Largest depth of a contact on a face, ridge or corner, as a share of the thickness of the part.
 constexpr double kMaxFaceDepth = 0.5;
+/// A part has no material below a point if the point at this distance below is outside it, in thicknesses.
+constexpr double kBelow = 1e-3;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
 /// Largest distance of a point from a concave edge, in depths of the point behind the face: a point that has
@@ -91,7 +93,8 @@ class Search {
   }
 
  private:
-  /// Adds the contacts on a face. Returns whether the part is above the plane of the face by max_gap or more.
+  /// Adds the contacts on a face. Returns whether the part is above the plane of the face by more than
+  /// max_gap.
   bool search_face(int number) {
     const ObstacleMesh::Face& face = mesh_.faces()[at(number)];
     const Vec3<double> n = a_.R.transpose() * face.normal;
@@ -110,7 +113,7 @@ class Search {
       const Vec3<double> along = a_.R.transpose() * face.normal.unitOrthogonal();
       touch_plane(*a_.hull, a_.surface.thickness(), {n, offset, along}, max_gap_, near_.hull_points,
                   near_.of_face);
-      return search_face_by_hull(number);
+      return search_face_by_hull(number, n);
     }
     const Eigen::Matrix3Xd& p = a_.points();
     const VecX<double> heights = (p.transpose() * n).array() + offset;
@@ -121,13 +124,18 @@ class Search {
   }
 
   /// Adds the contacts at the points near_.of_face of a part with a hull. Returns whether there are none. If
-  /// a point is deeper than all contacts, the part has passed through the face, and its other points are no
-  /// contacts.
-  bool search_face_by_hull(int number) {
+  /// a point is deeper than all contacts, a convex part has passed through the face, and its other points are
+  /// no contacts. If the part may be non-convex, like a hook with one tip beside the mesh, those of its other
+  /// points are contacts below which the part has no material. n: the normal of the face, body frame.
+  bool search_face_by_hull(int number, const Vec3<double>& n) {
     const std::vector<PlaneTouch>& touches = near_.of_face;
-    if (std::all_of(touches.begin(), touches.end(),
-                    [&](const PlaneTouch& touch) { return touch.height >= min_gap_; }))
-      for (const PlaneTouch& touch : touches) add_if_supported(number, touch.p, touch.height);
+    const bool passed = std::any_of(touches.begin(), touches.end(),
+                                    [&](const PlaneTouch& touch) { return touch.height < min_gap_; });
+    if (passed && a_.hull->is_convex()) return false;
+    const Vec3<double> down = -kBelow * a_.surface.thickness() * n;
+    for (const PlaneTouch& touch : touches)
+      if (!passed || a_.part.inside_outside(touch.p + down, a_.values) > 0)
+        add_if_supported(number, touch.p, touch.height);
     return touches.empty();
   }
 
@@ -146,20 +154,25 @@ class Search {
     if (low_box.exteriorDistance(face_box) > kSpacing * size_ + std::max(0.0, -lowest)) return;
     for (const CollisionSurface::LowPoint& low :
          a_.surface.low_points(a_.values, p, heights, max_gap_, field))
-      add_if_supported(number, low.p, low.height);
+      add_if_supported(number, low.p, low.height, &low.material);
   }
 
   /// Adds the contact at a point p (body frame, m) of the part, unless the face does not support this point.
-  /// height: that of p over the plane of the face, m.
-  void add_if_supported(int face, const Vec3<double>& p, double height) {
+  /// height: that of p over the plane of the face, m. material: the material point at p, if it is known.
+  void add_if_supported(int face, const Vec3<double>& p, double height,
+                        const Material<double>* material = nullptr) {
     if (!(height <= max_gap_ && height >= min_gap_)) return;
     const Vec3<double> x = a_.c + a_.R * p;
     if (!projects_onto(face, x) || is_nearer_to_others(face, x, height)) return;
-    add(x, mesh_.faces()[at(face)].normal, height);
+    Contact contact;
+    contact.x = x;
+    contact.normal = mesh_.faces()[at(face)].normal;
+    contact.gap = height;
+    add(contact, material);
   }
 
-  /// Whether the part is above the plane of a face of the mesh by max_gap or more, so that it cannot touch an
-  /// edge or a corner of this face.
+  /// Whether the part is above the plane of a face of the mesh by more than max_gap, so that it cannot touch
+  /// an edge or a corner of this face.
   bool is_above(int triangle) const {
     if (triangle < 0) return false;
     const auto face = std::lower_bound(near_.faces.begin(), near_.faces.end(), mesh_.face_of(triangle));
@@ -333,25 +346,20 @@ class Search {
     if (mesh_.points_outward(v, contact->normal, kMaxOutsideSine)) add(*contact);
   }
 
-  void add(const Vec3<double>& x, const Vec3<double>& normal, double gap) {
-    Contact contact;
-    contact.x = x;
-    contact.normal = normal;
-    contact.gap = gap;
-    add(contact);
-  }
-  /// Adds a contact, or replaces one at the same place that is less deep.
-  void add(Contact contact) {
-    contact.a.material = a_.part.label(into_a(contact.x), a_.values);
-    for (std::size_t k = first_; k < found_.size(); ++k) {
-      Contact& other = found_[k];
-      if ((other.x - contact.x).norm() > kSameContact * size_ ||
-          (other.normal - contact.normal).norm() > kSameNormal)
-        continue;
-      if (contact.gap < other.gap) other = contact;
-      return;
-    }
-    found_.push_back(contact);
+  /// Adds a contact, or replaces one at the same place that is less deep. material: the material point of the
+  /// part at the contact, if it is known.
+  void add(Contact contact, const Material<double>* material = nullptr) {
+    const auto same = std::find_if(found_.begin() + static_cast<std::ptrdiff_t>(first_), found_.end(),
+                                   [&](const Contact& other) {
+                                     return (other.x - contact.x).norm() <= kSameContact * size_ &&
+                                            (other.normal - contact.normal).norm() <= kSameNormal;
+                                   });
+    if (same != found_.end() && !(contact.gap < same->gap)) return;
+    contact.a.material = material != nullptr ? *material : a_.part.label(into_a(contact.x), a_.values);
+    if (same != found_.end())
+      *same = contact;
+    else
+      found_.push_back(contact);
   }
 
   const PlacedSurface& a_;

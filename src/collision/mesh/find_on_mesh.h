@@ -36,8 +36,8 @@ struct PlacedSurface {
 struct MeshSearch {
   /// The triangles near a part, and their faces, sharp edges and corners, in ascending order.
   std::vector<int> triangles, faces, edges, vertices;
-  std::vector<bool>
-      above;  ///< of each face in `faces`: whether the part is above its plane by max_gap or more
+  /// Of each face in `faces`: whether the part is above its plane by more than max_gap.
+  std::vector<bool> above;
   std::vector<Vec3<double>> hull_points;
   std::vector<PlaneTouch> of_face;
 };
