@@ -78,8 +78,10 @@ class Simulation {
 
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
-  /// Calls evaluate(workspace) for output. The workspace is that of the steps: each step overwrites the
-  /// results, and no step reads them. counters() omits these evaluations.
+  /// Calls evaluate(workspace) for output. The workspace is that of the steps, and a step overwrites the
+  /// results, with one exception: a method that reuses the accelerations at the end of the last step keeps
+  /// the dependent rows of joints that this evaluation found (RankRule::keep). counters() omits these
+  /// evaluations.
   template <class Evaluate>
   void evaluate_output(Evaluate&& evaluate) {
     const Counters before = counters();
