@@ -73,6 +73,17 @@ TEST_CASE("N16: dynamic exponents of the radial map: few mass points, errors bel
     check_case(c, 1e-11);
 }
 
+TEST_CASE("N16: dynamic exponents of deformed parts: number of mass points", "[mass][long]") {
+  const Part::Named taper{{"taper.tx", 0.3}, {"taper.ty", 0.3}}, twist{{"twist.angle", 0.8}};
+  for (const Case& c : {Case{"superellipsoid", taper, {"eps1", "eps2"}, false, 19000, {"taper"}},
+                        Case{"superellipsoid", twist, {"eps1", "eps2"}, false, 130000, {"twist"}},
+                        Case{"superellipsoid_radial", taper, {"eps1", "eps2"}, false, 160000, {"taper"}},
+                        Case{"superellipsoid_radial", twist, {"eps1", "eps2"}, false, 410000, {"twist"}}}) {
+    CAPTURE(c.shape, c.chain.front());
+    CHECK(prepared(c)->mass_points().n_points <= c.most_points);
+  }
+}
+
 namespace {
 
 /// Integrals over the radial superellipsoid with unit axes and density 1 by the trapezoidal rule. This rule
