@@ -193,6 +193,7 @@ void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double
   if (!model_->body().contact.obstacles[number].acts_before(t)) return;
   const Placed& placed = scratch_->parts[at(a)];
   const Eigen::AlignedBox3d box = world_box(a);
+  // The hull of a part that is far from the mesh is not made. find_on_mesh() has a smaller bound.
   const double far = std::max(max_gap, 0.0) + model_->parts()[at(a)].part->size();
   if (box.exteriorDistance((*obstacles_)[number].box()) > far) return;
   const std::size_t first = found.size();

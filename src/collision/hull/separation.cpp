@@ -397,7 +397,7 @@ Separation separation(const PlacedHull& a, const PlacedHull& b, double max_gap) 
         return true;
       }
     }
-    // The values of rough_s() are compared with each other: they all exceed s(n) somewhat.
+    // rough_s() is an upper bound, so it is compared only with other upper bounds, never with an exact s.
     if (rough > best.gap || (rough == best.gap && is_end_face)) {
       best = {n, rough};
       at_end_face = is_end_face;

@@ -23,7 +23,8 @@ constexpr double kSag = 0.02;
 constexpr double kSpacing = 0.4;
 /// Largest depth of a contact on a face, ridge or corner, as a share of the thickness of the part.
 constexpr double kMaxFaceDepth = 0.5;
-/// A part has no material below a point if the point at this distance below is outside it, in thicknesses.
+/// A part has material below a point of its surface if the point that is lower by this distance, in
+/// thicknesses, is inside the part.
 constexpr double kBelow = 1e-3;
 /// Tolerance for a point inside a triangle, in sizes.
 constexpr double kInsideTolerance = 1e-6;
@@ -125,8 +126,9 @@ class Search {
 
   /// Adds the contacts at the points near_.of_face of a part with a hull. Returns whether there are none. If
   /// a point is deeper than all contacts, a convex part has passed through the face, and its other points are
-  /// no contacts. If the part may be non-convex, like a hook with one tip beside the mesh, those of its other
-  /// points are contacts below which the part has no material. n: the normal of the face, body frame.
+  /// no contacts. A part that may be non-convex can have one point beside the mesh and another on the face,
+  /// like a hook. Then its other points are contacts if it has no material below them. n: the normal of the
+  /// face, body frame.
   bool search_face_by_hull(int number, const Vec3<double>& n) {
     const std::vector<PlaneTouch>& touches = near_.of_face;
     const bool passed = std::any_of(touches.begin(), touches.end(),
